@@ -35,13 +35,16 @@ def soak_drawn(options: argparse.Namespace, draw: Callable[[int, Path], tuple[So
     for number in range(options.count):
         with tempfile.TemporaryDirectory(prefix="ikgen-drawn-") as folder:
             arm, text = draw(number, Path(folder))
-            made = emit(arm, Path(folder), "python,cpp")
+            made = emit(arm, Path(folder), "cpp")
             found = _soaked(made, options.poses, options.near)
-            missing = missing or not isinstance(found, Soak)
-            wrong = found.failures(ABOVE) if isinstance(found, Soak) else 0
-            said = f"{wrong} failures of {found.rows} rows" if isinstance(found, Soak) else found
-            print(f"{number:4} {arm.key:40} {text:22} {_task(made):18} {said}", flush=True)
-            if isinstance(found, Soak) and (wrong or found.totals[2] + found.totals[5]):
+            head = f"{number:4} {arm.key:40} {text:22} {_task(made):18}"
+            if not isinstance(found, Soak):
+                missing = True
+                print(head, found, flush=True)
+                continue
+            wrong = found.failures(ABOVE)
+            print(head, f"{wrong} failures of {found.rows} rows", flush=True)
+            if wrong or found.totals[2] + found.totals[5]:
                 print("\n".join(table(found)), flush=True)
             if wrong:
                 failed = True
