@@ -5,6 +5,7 @@ from __future__ import annotations
 import html
 import re
 import shlex
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -59,3 +60,15 @@ def test_paths_are_those_of_the_descriptions_folder() -> None:
     words = report_command(named, reading, find_task("position-yaw"))
     assert words.startswith("ikgen report example-robot-data:ur5 --base base_link ")
     assert f"--calibration {FIXTURES / 'own.yaml'}" in words and "--task position-yaw" in words
+
+
+def test_paths_hold_where_the_description_is_reached_by_a_link(tmp_path: Path) -> None:
+    (tmp_path / "far" / "away").mkdir(parents=True)
+    (tmp_path / "packages").mkdir()
+    (tmp_path / "here").symlink_to(tmp_path / "far" / "away", target_is_directory=True)
+    shutil.copy(FIXTURES / "ur5e.urdf", tmp_path / "far" / "away")
+    robot = tmp_path / "here" / "ur5e.urdf"
+    asked = Request(robot, package_paths=(tmp_path / "packages",))
+    words = shlex.split(report_command(asked, read(Request(robot)), find_task("pose")))
+    named = words[words.index("--package-path") + 1]
+    assert (robot.parent / named).samefile(tmp_path / "packages")

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import os
 import shlex
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ikgen.generation.record import seen_from
 from ikgen.importers.named_robots import is_named
 
 if TYPE_CHECKING:
@@ -39,4 +39,4 @@ def report_command(request: Request, reading: Reading, task: Task) -> str:
 
 def _beside(request: Request, path: Path) -> Path:
     """A path as it is called in the description's folder; as it was given where that has none."""
-    return path if is_named(request.robot) else Path(os.path.relpath(path, request.robot.parent))
+    return path if is_named(request.robot) else Path(seen_from(path, request.robot.parent))
