@@ -6,12 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.support.both_languages import header_of
+from tests.support.both_languages import emitted_in_both
 from tests.support.serial_urdf import serial_urdf
-from tests.support.solving import NO_COMPILER, import_text
+from tests.support.solving import NO_COMPILER
 
-from ikgen.emit.python.python_emitter import emit_module
-from ikgen.generation.derive import derive
 from ikgen.generation.request import Request
 
 pytestmark = pytest.mark.usefixtures("solved_once")
@@ -33,9 +31,7 @@ def test_pairs_near_vertical_tools_are_found(tmp_path: Path) -> None:
     place = tmp_path / "measured.urdf"
     path = serial_urdf(place, ORIGINS, axes=AXES, tip=TIP, limit=3.0)
     request = Request(path, name="measured", task="position-pitch", tool_axis="z")
-    module = derive(request).module
-    arm = import_text(emit_module(module), tmp_path)
-    header = header_of(module, tmp_path)
+    arm, header = emitted_in_both(request, tmp_path)
     random = np.random.default_rng(3)
     q = random.uniform(-1.5, 1.5, (4000, 4))
     q[:, 3] = random.normal(size=4000) * 3e-3 - q[:, 1] - q[:, 2]  # the tool's z is nearly upright

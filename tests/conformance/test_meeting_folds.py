@@ -6,12 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.support.both_languages import header_of
+from tests.support.both_languages import emitted_in_both
 from tests.support.serial_urdf import serial_urdf
-from tests.support.solving import NO_COMPILER, import_text
+from tests.support.solving import NO_COMPILER
 
-from ikgen.emit.python.python_emitter import emit_module
-from ikgen.generation.derive import derive
 from ikgen.generation.request import Request
 
 pytestmark = pytest.mark.usefixtures("solved_once")
@@ -37,9 +35,7 @@ def test_all_are_found_where_two_folds_meet(tmp_path: Path) -> None:
     origins, axes, most = zip(*((joint[:2], *joint[2:]) for joint in JOINTS), strict=True)
     limits = [(-x, x) for x in most]
     path = serial_urdf(tmp_path / "turret.urdf", origins, axes=axes, limit=limits)
-    module = derive(Request(path, name="turret")).module
-    arm = import_text(emit_module(module), tmp_path)
-    header = header_of(module, tmp_path)
+    arm, header = emitted_in_both(Request(path, name="turret"), tmp_path)
     random = np.random.default_rng(7)
     q = np.zeros((200, 4))
     q[:, 0] = random.uniform(-2.5, 2.5, 200)
@@ -70,9 +66,7 @@ def test_a_root_of_what_a_double_root_leaves_is_taken(tmp_path: Path) -> None:
     """Of exact geometry: where one root is a double one, what the next is taken of has half the digits."""
     path = tmp_path / "folding.toml"
     path.write_text(TABLE)
-    module = derive(Request(path, name="folding")).module
-    arm = import_text(emit_module(module), tmp_path)
-    header = header_of(module, tmp_path)
+    arm, header = emitted_in_both(Request(path, name="folding"), tmp_path)
     random = np.random.default_rng(7)
     q = random.uniform(-np.pi, np.pi, (300, 6))
     q[:, 1:3] = random.choice([0.0, np.pi], (300, 2))

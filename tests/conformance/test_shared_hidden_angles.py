@@ -6,11 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.support.both_languages import header_of
+from tests.support.both_languages import emitted_in_both, header_of
 from tests.support.redundant_arms import Joint, serial_urdf
-from tests.support.solving import FIXTURES, NO_COMPILER, import_text
+from tests.support.solving import FIXTURES, NO_COMPILER
 
-from ikgen.emit.python.python_emitter import emit_module
 from ikgen.generation.derive import derive
 from ikgen.generation.request import Request
 from ikgen.kinematics.forward import file_forward
@@ -32,9 +31,9 @@ arm and the pitch are the same then in two solutions."""
 def test_all_are_found_where_the_wrist_is_not_rolled(tmp_path: Path) -> None:
     path = tmp_path / "stretch.urdf"
     path.write_text(serial_urdf("stretch", LIFT))
-    module = derive(Request(path, name="stretch", task="position-direction", tool_axis="y")).module
-    arm = import_text(emit_module(module), tmp_path)
-    header = header_of(module, tmp_path)
+    arm, header = emitted_in_both(
+        Request(path, name="stretch", task="position-direction", tool_axis="y"), tmp_path
+    )
     random = np.random.default_rng(4)
     low, high = np.array(arm.LOWER), np.array(arm.UPPER)
     q = random.uniform(low, high, (3000, 5))

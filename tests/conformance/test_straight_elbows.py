@@ -6,12 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.support.both_languages import header_of
+from tests.support.both_languages import emitted_in_both
 from tests.support.serial_urdf import serial_urdf
-from tests.support.solving import NO_COMPILER, import_text
+from tests.support.solving import NO_COMPILER
 
-from ikgen.emit.python.python_emitter import emit_module
-from ikgen.generation.derive import derive
 from ikgen.generation.request import Request
 
 pytestmark = pytest.mark.usefixtures("solved_once")
@@ -32,9 +30,7 @@ AXES = ("0 0 1", "0 0 1", "0 0 1", "0 0 1", "0 0 -1", "0 0 1")
 @pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "compiles")
 def test_a_straight_elbow_is_reached_next_to_a_straight_wrist(tmp_path: Path) -> None:
     path = serial_urdf(tmp_path / "straight.urdf", ORIGINS, axes=AXES)
-    module = derive(Request(path, base="l0", tip="l6", name="straight")).module
-    arm = import_text(emit_module(module), tmp_path)
-    header = header_of(module, tmp_path)
+    arm, header = emitted_in_both(Request(path, base="l0", tip="l6", name="straight"), tmp_path)
     random = np.random.default_rng(7)
     q = random.uniform(-3.0, 3.0, (400, 6))
     q[:, 2] = 0.0

@@ -6,12 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.support.both_languages import header_of
+from tests.support.both_languages import emitted_in_both
 from tests.support.serial_urdf import serial_urdf
-from tests.support.solving import NO_COMPILER, import_text
+from tests.support.solving import NO_COMPILER
 
-from ikgen.emit.python.python_emitter import emit_module
-from ikgen.generation.derive import derive
 from ikgen.generation.request import Request
 
 pytestmark = pytest.mark.usefixtures("solved_once")
@@ -31,9 +29,7 @@ TIP = ("0 0 -0.16", f"{HALF} 0 {RIGHT}")
 def test_rows_keep_the_elevation(tmp_path: Path) -> None:
     path = serial_urdf(tmp_path / "upright.urdf", ORIGINS, tip=TIP)
     request = Request(path, name="upright", task="position-pitch", tool_axis="y")
-    module = derive(request).module
-    arm = import_text(emit_module(module), tmp_path)
-    header = header_of(module, tmp_path)
+    arm, header = emitted_in_both(request, tmp_path)
     random = np.random.default_rng(3)
     q = random.uniform(-3.0, 3.0, (400, 4))
     q[:, 1] = random.choice([0.0, np.pi], 400) + 10.0 ** random.uniform(-9.0, -2.0, 400)

@@ -14,11 +14,13 @@ from tests.support.solving import import_text
 from ikgen.emit.cpp.cpp_emitter import emit, emit_header
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.emit.solver_module import SolverModule
+from ikgen.generation.derive import derive
 from ikgen.generation.emitted_runners import arm_constants
+from ikgen.generation.request import Request
 from ikgen.verify.runners.cpp_header import CppHeader
 from ikgen.verify.runners.cpp_toolchain import compile_program, find_eigen
 
-__all__ = ["Both", "header_of", "in_both"]
+__all__ = ["Both", "emitted_in_both", "header_of", "in_both"]
 
 Array = NDArray[np.float64]
 
@@ -116,6 +118,12 @@ def header_of(module: SolverModule, folder: Path) -> CppHeader:
     for name, text in emit(module).items():
         (folder / name).write_text(text)
     return CppHeader(folder / f"{module.name}_ik.hpp", arm_constants(module))
+
+
+def emitted_in_both(request: Request, folder: Path) -> tuple[ModuleType, CppHeader]:
+    """The emitted module of a request, loaded, and its header in a folder, compiled."""
+    module = derive(request).module
+    return import_text(emit_module(module), folder), header_of(module, folder)
 
 
 def in_both(module: SolverModule, folder: Path, modes: str = "012345") -> Both:
