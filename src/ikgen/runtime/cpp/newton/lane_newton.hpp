@@ -10,26 +10,29 @@
 
 namespace ikgen_runtime {
 
-// The least squares solution of V d = e in lanes by V = Q R (modified Gram-Schmidt).
+// The least squares solution of V d = e in lanes by V = Q R (modified Gram-Schmidt), the columns of Q as long as they come:
+// the diagonal of R is 1.
 template <int Rows, int Columns, int N> struct LaneFactors {
-  Lanes<N> V[Rows][Columns], R[Columns][Columns], inverse[Columns];
-  Lanes<N> pivot;  // the smallest diagonal entry of R
+  Lanes<N> V[Rows][Columns], R[Columns][Columns], inverse[Columns];  // of the squared lengths of the columns of Q
+  Lanes<N> pivot;  // the smallest of the lengths
 
   // Puts Q into the place of V.
   [[gnu::always_inline]] void factor() noexcept {
+    Lanes<N> least = spread<N>(kInfinity);
     for (int k = 0; k < Columns; ++k) {
       Lanes<N> square = V[0][k] * V[0][k];
       for (int e = 1; e < Rows; ++e) square = square + V[e][k] * V[e][k];
-      const Lanes<N> length = sqrt(max(square, 1e-200));
-      pivot = k == 0 ? length : min(pivot, length);
-      inverse[k] = 1.0 / length;
-      for (int e = 0; e < Rows; ++e) V[e][k] = V[e][k] * inverse[k];
+      square = max(square, 1e-200);
+      least = min(least, square);
+      inverse[k] = 1.0 / square;
       for (int j = k + 1; j < Columns; ++j) {
         R[k][j] = V[0][k] * V[0][j];
         for (int e = 1; e < Rows; ++e) R[k][j] = R[k][j] + V[e][k] * V[e][j];
+        R[k][j] = R[k][j] * inverse[k];
         for (int e = 0; e < Rows; ++e) V[e][j] = V[e][j] - R[k][j] * V[e][k];
       }
     }
+    pivot = sqrt(least);
   }
 
   // d; e is left with what no d takes away.
@@ -37,12 +40,11 @@ template <int Rows, int Columns, int N> struct LaneFactors {
     for (int k = 0; k < Columns; ++k) {
       d[k] = V[0][k] * e[0];
       for (int i = 1; i < Rows; ++i) d[k] = d[k] + V[i][k] * e[i];
+      d[k] = d[k] * inverse[k];
       for (int i = 0; i < Rows; ++i) e[i] = e[i] - d[k] * V[i][k];
     }
-    for (int k = Columns - 1; k >= 0; --k) {
+    for (int k = Columns - 1; k >= 0; --k)
       for (int j = k + 1; j < Columns; ++j) d[k] = d[k] - R[k][j] * d[j];
-      d[k] = d[k] * inverse[k];
-    }
   }
 
   // What the product of the two smallest singular values is at least: over the inverse's ones, X, the sum of all such
@@ -50,11 +52,10 @@ template <int Rows, int Columns, int N> struct LaneFactors {
   Lanes<N> least_product() const noexcept {
     Lanes<N> X[Columns][Columns], sum = spread<N>(0.0), squares = sum;
     for (int j = 0; j < Columns; ++j) {
-      X[j][j] = inverse[j];
+      X[j][j] = sqrt(inverse[j]);
       for (int i = j - 1; i >= 0; --i) {
-        X[i][j] = R[i][i + 1] * X[i + 1][j];
-        for (int k = i + 2; k <= j; ++k) X[i][j] = X[i][j] + R[i][k] * X[k][j];
-        X[i][j] = -inverse[i] * X[i][j];
+        X[i][j] = -(R[i][i + 1] * X[i + 1][j]);
+        for (int k = i + 2; k <= j; ++k) X[i][j] = X[i][j] - R[i][k] * X[k][j];
       }
     }
     for (int i = 0; i < Columns; ++i)

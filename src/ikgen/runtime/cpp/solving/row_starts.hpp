@@ -23,7 +23,8 @@ template <class Arm> struct RowStart {
   using Refinement = NewtonRefinement<Arm>;
   using Rows = typename Arm::template Rows<1>;
 
-  bool marked = false, nearby = false, settled = false, exact = false;  // settled: a solution, whatever else there is
+  bool marked = false, nearby = false, settled = false;  // settled: a solution, whatever else there is
+  bool exact = false;  // whether what it leads to is known to round-off
   bool alone = false;  // whether steps showed that it is the one solution near its start
   bool around = false;  // whether the solutions of the continuum that it lies on are known
   int lane = 0;
@@ -88,6 +89,7 @@ template <class Arm> struct RowStart {
       const auto led = fold.approach(begin, side, trial, known);
       if (led == Fold::Led::Between) break;  // nor on the other side
       if (led == Fold::Led::There) take(aim, trial, out);
+      exact = exact || led == Fold::Led::Known;
       const double way = Pair::farthest(start, trial);
       if (!right || !(way < kBeside) || way < kSkew * begin.lead(side) + Policy::kCoincident) continue;
       CurveParts<Arm> curve(aim);
