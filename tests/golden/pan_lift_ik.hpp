@@ -1125,11 +1125,15 @@ template <class Arm> struct FoldPair {
 
   template <class IsKnown> Led approach(const Begin& from, double side, double* q, const IsKnown& known) noexcept {
     std::copy_n(from.still, kMoving, still);
+    double bend[kEquations] = {}, apart = kInfinity;
     for (int i = 0; i < kSteps; ++i) {
-      const Way way = step(i == 0 ? from.taken : reduced(q, false), side, q);
+      const Taken taken = i == 0 ? from.taken : reduced(q, false);
+      const Way way = step(taken, side * sense_of(taken, bend), q);
       if (way.least > kApart + way.length * (kCubic * way.length * way.length + kMixed * way.across)) return Led::Between;
-      if (known(q, kShare * std::min(way.apart, kTogether))) return Led::Known;
-      if (way.length <= std::max(kClose, kSure * way.apart)) break;
+      if (way.apart > 0.0) apart = std::min(apart, way.apart);  // next to an inflection it tells nothing
+      const double gap = way.apart > 0.0 ? apart : 0.0;
+      if (known(q, kShare * std::min(gap, kTogether))) return Led::Known;
+      if (way.length <= std::max(kClose, kSure * gap)) break;
     }
     return Led::There;
   }
@@ -1255,6 +1259,14 @@ template <class Arm> struct FoldPair {
         bend[e] += (beyond.slope[e][kJoints[k]] - at.slope[e][kJoints[k]]) * still[k] / kAlong;
     }
     return Taken(others, at.error, bend, others.flow);
+  }
+
+  static double sense_of(const Taken& taken, double (&before)[kEquations]) noexcept {
+    double same = 0.0;
+    for (int e = 0; e < kEquations; ++e) same += before[e] * taken.rest[e][1];
+    const double sense = same < 0.0 ? -1.0 : 1.0;
+    for (int e = 0; e < kEquations; ++e) before[e] = sense * taken.rest[e][1];
+    return sense;
   }
 
   Way step(const Taken& taken, double side, double* q) noexcept {

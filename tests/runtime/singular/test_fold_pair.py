@@ -149,7 +149,7 @@ def test_one_step_from_a_stretched_arm_goes_nearly_to_each_of_the_two_rows(off: 
     T[:, 0, 3] = 2.0 - off
     elbow = 2.0 * np.arccos(1.0 - 0.5 * off)
     q, side = np.zeros((2, 2)), np.array([1.0, -1.0])
-    moved, still, x = _step(arm, q, T, side, generic(2, 2))
+    moved, still, x, _ = _step(arm, q, T, side, None)
     np.testing.assert_allclose(np.abs(moved[:, 1]), elbow, rtol=2e-2)
     assert moved[0, 1] * moved[1, 1] < 0.0 and x[0] * x[1] < 0.0
     np.testing.assert_allclose(np.abs(x), np.hypot(elbow, 0.5 * elbow), rtol=2e-2)

@@ -43,7 +43,7 @@ template <class Arm> class CompensatedRows {
 
  private:
   static constexpr int kRounds = 2;
-  static constexpr double kShare = 0.1;  // of the least product of two singular values, as `refine` takes it
+  static constexpr double kShare = 0.2;  // of the least product of two singular values, as `refine` takes it
   static constexpr double kAside = 0.1;  // rad or m: what moves them farther there may lead to others as well
   static constexpr double kRemote = 2.0;  // singular value over the way to a fold: a second singularity is farther
   static constexpr double kTogether = 0.3;  // rad or m: nearer rows may be of one fold

@@ -69,13 +69,16 @@ def approach(arm: Arm, q: Array, T: Array, side: Array) -> tuple[Array, Array]:
     """From q (k, dof) towards the solution on one `side` (k,), 1 or -1, of the place where two may meet, or
     to where they nearly do; T (k, 4, 4). With it how far (k,) the first step led along the still direction:
     there it ends if the second order tells all."""
-    q, still, going = q.copy(), generic(len(q), len(arm.moving)), np.arange(len(q))
-    lead = np.zeros(len(q))
+    q, going, lead = q.copy(), np.arange(len(q)), np.zeros(len(q))
+    before: _Stepped | None = None
     for step in range(_STEPS):
-        q[going], still[going], x = _step(arm, q[going], T[going], side[going], still[going])
+        after = _step(arm, q[going], T[going], side[going], before)
+        q[going] = after.q
+        length = np.abs(after.along)
         if step == 0:
-            lead = np.abs(x)
-        going = going[np.abs(x) > _CLOSE]
+            lead = length
+        on = length > _CLOSE
+        going, before = going[on], some_of(after, on)
         if not len(going):
             break
     return q, lead
@@ -125,17 +128,34 @@ def _across(slope: Array, still: Array, damping: float) -> _Others:
     return _Others(still, flow, V, damped(normal, damping))
 
 
-def _step(arm: Arm, q: Array, T: Array, side: Array, still: Array) -> tuple[Array, Array, Array]:
-    """q (k, dof) after a step, the unit directions (k, n) in which the pose moves least, in the sense of
-    `still`, and how far the step goes along them (k,)."""
+class _Stepped(NamedTuple):
+    """Rows `q` (k, dof) after a step; the unit directions `still` (k, n) in which the pose moved least
+    before it, and how far it went `along` them (k,); how these bend what of the error the others leave,
+    `bend` (k, m), in the sense of the steps before."""
+
+    q: Array
+    still: Array
+    along: Array
+    bend: Array
+
+
+def _step(arm: Arm, q: Array, T: Array, side: Array, before: _Stepped | None) -> _Stepped:
+    """From q (k, dof) to one side, with directions in the sense of those of the step `before`. Behind an
+    inflection what is left bends the other way, and its slopes have the other sense."""
     error, slope = linearized(arm, q, T)
+    still = generic(len(q), slope.shape[2]) if before is None else before.still
     others = _others(arm, slope, still)
     there = others.moved(arm, q, np.zeros_like(still), _ALONG)
     _, beyond = linearized(arm, there, T)
-    bend = np.einsum("kej,kj->ke", beyond - slope, others.still) / _ALONG
-    taken, going = others.take_away(np.stack([error, bend, others.flow], axis=2))
-    x = _root(side, *np.moveaxis(taken, 2, 0))
-    return others.moved(arm, q, going[:, :, 0], x[:, None]), others.still, x
+    turned = np.einsum("kej,kj->ke", beyond - slope, others.still) / _ALONG
+    taken, going = others.take_away(np.stack([error, turned, others.flow], axis=2))
+    rest, bend, flow = np.moveaxis(taken, 2, 0)
+    sense = np.ones(len(q))
+    if before is not None:
+        sense[(bend * before.bend).sum(axis=1) < 0.0] = -1.0
+    x = _root(side * sense, rest, bend, flow)
+    q = others.moved(arm, q, going[:, :, 0], x[:, None])
+    return _Stepped(q, others.still, x, sense[:, None] * bend)
 
 
 def _still(slope: Array, still: Array, damping: float) -> Array:

@@ -22,7 +22,7 @@ from ikgen.runtime.python.solving.closed_form_rows import closed_form
 __all__ = ["compensated_rows"]
 
 _ROUNDS = 2
-_SHARE = 0.1  # of the least product of two singular values below which rows are strained
+_SHARE = 0.2  # of the least product of two singular values below which rows are strained
 _ASIDE = 0.1  # rad or m: what moves rows farther there may lead to others as well
 _TOGETHER = 0.3  # rad or m: nearer rows may be of one fold
 _REMOTE = 2.0  # singular value over the way to a fold: a second singularity is farther
