@@ -4,6 +4,7 @@
 
 #include "arm/moving_joints.hpp"
 #include "arm/pose_error.hpp"
+#include "arrays/constants.hpp"
 #include "arrays/lanes.hpp"
 #include "arrays/small_matrix.hpp"
 
