@@ -2158,11 +2158,21 @@ template <class Arm> struct LimitRows {
     std::copy_n(q, Arm::kDof, on_limits);
     Row::placed(on_limits, options);
     if (Refinement::refine(q, aim) && Row::place(q, options)) return Row::add(out, q, singular);
-    bool still[Arm::kDof];
-    for (int j = 0; j < Arm::kDof; ++j)
-      still[j] = on_limits[j] == Arm::kLower.data()[j] || on_limits[j] == Arm::kUpper.data()[j];
-    if (Refinement::error_after(on_limits, aim, still) < Policy::kExact && Row::place(on_limits, options))
-      Row::add(out, on_limits, singular);
+    int count = 0;
+    for (int j = 0; j < Arm::kDof; ++j) count += is_on_limit(j, on_limits);
+    for (int alone = -1; alone < (count > 1 ? Arm::kDof : 0); ++alone) {
+      if (alone >= 0 && !is_on_limit(alone, on_limits)) continue;
+      double row[Arm::kDof];
+      bool still[Arm::kDof];
+      std::copy_n(on_limits, Arm::kDof, row);
+      for (int j = 0; j < Arm::kDof; ++j) still[j] = alone < 0 ? is_on_limit(j, on_limits) : j == alone;
+      if (Refinement::error_after(row, aim, still) < Policy::kExact && Row::place(row, options))
+        return Row::add(out, row, singular);
+    }
+  }
+
+  static bool is_on_limit(int j, const double* q) noexcept {
+    return q[j] == Arm::kLower.data()[j] || q[j] == Arm::kUpper.data()[j];
   }
 };
 

@@ -1769,12 +1769,17 @@ def _rows_inside(
 
 
 def _held_there(arm: _Arm, aim: Array, row: Row, flag: bool) -> list[_Found]:
-    """The row with its joints on limits left there, if the pose is right to round-off."""
-    moving = [j for j in arm.moving if row[j] not in (arm.lower[j], arm.upper[j])]
+    """The row with its joints on limits left there, all of them or one alone, if the pose is right to
+    round-off."""
+    on = [j for j in arm.moving if row[j] in (arm.lower[j], arm.upper[j])]
     start, policy = np.array([row]), arm.policy
-    q, error, _, _ = _refine(arm.chain, arm.task, moving, start, aim, policy, arm.angle)
-    found = [(tuple(q[0].tolist()), flag)] if error[0] < policy.exact else []
-    return _place_rows(arm, found, row, True)
+    for held in (on, *([j] for j in on if len(on) > 1)):
+        moving = [j for j in arm.moving if j not in held]
+        q, error, _, _ = _refine(arm.chain, arm.task, moving, start, aim, policy, arm.angle)
+        found = [(tuple(q[0].tolist()), flag)] if error[0] < policy.exact else []
+        if placed := _place_rows(arm, found, row, True):
+            return placed
+    return []
 
 
 # How far rows are from their joint limits, whatever turns they are on.

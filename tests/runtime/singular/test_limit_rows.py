@@ -17,7 +17,7 @@ from ikgen.runtime.python.singular.limit_rows import rows_inside
 pytestmark = pytest.mark.usefixtures("solved_once")
 
 Array = NDArray[np.float64]
-JOINT = 2
+SHOULDER, JOINT = 1, 2
 
 
 @pytest.fixture(scope="module", params=["kuka_kr6r900sixx", "doosan_m1013"])
@@ -73,6 +73,35 @@ def test_configurations_on_a_limit_near_a_fold_are_found(arm: ModuleType, off: f
                     assert gap.min() < 2e-6
                     assert np.abs(arm.forward(rows) - pose).max() < 2e-9
                     assert (rows <= arm._ARM.upper).all() and (rows >= arm._ARM.lower).all()
+
+
+@pytest.mark.parametrize("room", [1e-9, 1e-8, 1e-7])
+def test_of_several_joints_outside_one_alone_may_belong_on_its_limit(
+    arm: ModuleType, room: float
+) -> None:
+    """Along the direction in which the pose hardly moves the elbow is on its limit, and the shoulder would
+    be on its own a bit farther on: a row may be outside both."""
+    rng = np.random.default_rng(5)
+    for _ in range(6):
+        q = rng.uniform(-1.0, 1.0, 6)
+        q[4] = 0.8
+        at = stretched(arm, q)
+        still = np.linalg.svd(arm.jacobian(at))[2][-1]
+        for way in (still, -still):
+            lower, upper = np.full((2, 6), 4.0) * np.array([[-1.0], [1.0]])
+            for joint, left in ((JOINT, 0.0), (SHOULDER, room)):
+                end = at[joint] + left * np.sign(way[joint])
+                (upper if way[joint] > 0.0 else lower)[joint] = end
+            limits = tuple(lower.tolist()), tuple(upper.tolist())
+            arm._ARM = replace(arm._ARM, lower=limits[0], upper=limits[1])
+            for off in (0.0, 1e-8, 1e-7, 1e-6):
+                start = at + off * way
+                row = rows_inside(
+                    arm._ARM, arm.forward(at)[None], [(tuple(start.tolist()), False)], None, True
+                )
+                assert row
+                gap = np.remainder(np.array(row[0][0]) - at + np.pi, 2 * np.pi) - np.pi
+                assert np.abs(gap).max() < 2e-6
 
 
 def test_what_the_pose_tells_to_be_outside_stays_outside(arm: ModuleType) -> None:
