@@ -253,9 +253,10 @@ inline bool run_resultant(const Chain& F, const Frame& T, const std::array<int, 
   const Equations eq = eliminate(loop);
   const Pencil pencil = make_pencil(eq.E, eq.left);
   Roots<kDegree> roots;
+  constexpr double kMade = 4.0;  // the bound is of rounding in the pencil: what it is made of has rounded before
   const auto values = [&](bool close, const auto& c, const auto& s, auto& f, auto& blur, auto&) {
     resultants(pencil, close, c, s, f, blur);
-    for (double& x : blur) x *= caution;
+    for (double& x : blur) x *= kMade * caution;
     return false;
   };
   const bool all = find_roots<kDegree>(values, roots);
