@@ -354,6 +354,16 @@ def test_limits_of_continuous_joints_are_one_warning(read):
     assert warning.split("/")[-1].startswith(said)
 
 
+def test_turned_axes_are_one_warning(read):
+    axis = f'<axis xyz="0 0 1" rpy="0 0 0"/>{LIMIT}'
+    joints = [
+        joint(axis, name=f"j{i}", parent="abcd"[i], child="abcd"[i + 1], type_=kind)
+        for i, kind in enumerate(("fixed", "revolute", "revolute"))
+    ]
+    (warning,) = read(robot(*joints, links="abcd")).source.warnings
+    assert warning.endswith("the <axis> of joint 'j1' and of 1 more has an rpy, which URDF ignores")
+
+
 DOCTYPES = {
     "a bomb": '[<!ENTITY a "x"><!ENTITY b "&a;&a;"><!ENTITY c "&b;&b;">]',
     "a parameter": '[<!ENTITY % p "x">]',

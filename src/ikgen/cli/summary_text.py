@@ -107,7 +107,8 @@ def _by_default(generation: Generation, report: VerificationReport) -> str:
     values = generation.derivation.module.free_defaults
     held = zip(generation.derivation.reading.dh.held, values, strict=True)
     named = ", ".join(f"{name} = {value:.3g}" for name, value in held)
-    return f"; by default ({named}) {answered} of {poses} of these have any"
+    more = "; search tries other values" if 2 * answered < poses else ""
+    return f"; by default ({named}) {answered} of {poses} of these have any{more}"
 
 
 def _verified(name: str, report: VerificationReport) -> str:

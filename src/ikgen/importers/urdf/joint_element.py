@@ -149,8 +149,6 @@ def _axis(joint: Element, name: str, place: Place) -> Matrix:
     if axis is not None:
         required_attribute(axis, "xyz", f"<axis> of joint '{name}'", place)
         xyz = _vector(axis, "xyz", xyz, name, place)
-        if axis.get("rpy") is not None:
-            place.warn(axis, f"joint '{name}': <axis> has an rpy, which URDF ignores")
     size = math.hypot(*xyz)
     if size > _AXIS_LONGEST:
         raise place.error(axis, f"joint '{name}': axis of length {size:g}", "use a unit vector")

@@ -37,23 +37,40 @@ def read_joints(root: Element, place: Place) -> tuple[Joint, ...]:
     unique_names(elements, "joint", place)
     joints = tuple(read_joint(element, place) for element in elements)
     _note_limits_of_continuous(joints, elements, place)
+    _note_turned_axes(joints, elements, place)
     return joints
 
 
 def _note_limits_of_continuous(
     joints: Sequence[Joint], elements: Sequence[Element], place: Place
 ) -> None:
-    """One warning for all continuous joints with limits, as where one has them all tend to."""
     limited = [
-        (joint, element)
+        (joint.name, element)
         for joint, element in zip(joints, elements, strict=True)
         if joint.type is JointType.CONTINUOUS and stated_limits(element)
     ]
     if limited:
-        first, element = limited[0]
-        more = f" and of {len(limited) - 1} more" if len(limited) > 1 else ""
         place.warn(
-            element,
-            f"limits of the continuous joint '{first.name}'{more} ignored, as a continuous joint has "
+            limited[0][1],
+            f"limits of the continuous joint {_first_of(limited)} ignored, as a continuous joint has "
             'none: write type="revolute" where they are meant',
         )
+
+
+def _note_turned_axes(joints: Sequence[Joint], elements: Sequence[Element], place: Place) -> None:
+    turned = [
+        (joint.name, axis)
+        for joint, element in zip(joints, elements, strict=True)
+        for axis in children(element, "axis")
+        if joint.type is not JointType.FIXED and axis.get("rpy") is not None
+    ]
+    if turned:
+        place.warn(
+            turned[0][1], f"the <axis> of joint {_first_of(turned)} has an rpy, which URDF ignores"
+        )
+
+
+def _first_of(noted: Sequence[tuple[str, Element]]) -> str:
+    """The first, and how many there are besides: one warning for all, as where one has it all tend to."""
+    more = f" and of {len(noted) - 1} more" if len(noted) > 1 else ""
+    return f"'{noted[0][0]}'{more}"
