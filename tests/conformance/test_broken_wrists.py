@@ -7,13 +7,19 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 from tests.support.both_languages import emitted_in_both
 from tests.support.serial_urdf import serial_urdf
 from tests.support.solving import NO_COMPILER
 
 from ikgen.generation.request import Request
 
-pytestmark = pytest.mark.usefixtures("solved_once")
+pytestmark = [
+    pytest.mark.usefixtures("solved_once"),
+    pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "compiles"),
+]
+
+Array = NDArray[np.float64]
 
 ORIGINS = (
     ("0 0 0.003445", "3.141592653589793 0 0"),
@@ -35,15 +41,47 @@ BETWEEN = np.array(
 )
 
 
-@pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "compiles")
-def test_solutions_between_those_of_the_closed_form_are_found(tmp_path: Path) -> None:
-    path = serial_urdf(tmp_path / "wrist.urdf", ORIGINS, axes=AXES, limit=3.1)
-    arm, header = emitted_in_both(Request(path, name="wrist"), tmp_path)
+SHOULDER_TOO = (  # axes that nearly meet at the shoulder as well
+    ("0 0 0.156425", "-3.1416 0 0"),
+    ("0 0.005375 -0.12838", "1.5708 0 0"),
+    ("0 -0.41 0", "3.1416 0 0"),
+    ("0 0.208425 -0.006375", "1.5708 0 0"),
+    ("0 -0.00017505 -0.10592505", "-1.5708 0 0"),
+    ("0 0.105925 -0.00017505", "1.5708 0 0"),
+)
+CROSSING = np.array(  # where the wrist's broken continuum crosses the shoulder's
+    [
+        [-1.82019090909, 0.85851872976, 2.22003411278, -2.63275567688, -0.00291534142, -0.50259636322],
+        [3.03919904483, -0.85758470941, -2.21392757543, 0.37146287668, -0.00267008175, 2.77880474828],
+        [-2.19654874450, 0.87999109561, 2.42574645592, 0.50903434300, 0.00000000570, 1.41686975322],
+        [-1.01520565189, 0.86658285009, 2.46740579128, 2.03910786843, 0.00000012302, -2.63178438787],
+        [-1.26982983779, -0.53942633859, -1.25882290791, -2.36618037870, 0.0, -2.44842484104],
+        [-1.03849334544, 0.88011313695, 2.37670651352, -2.49117813919, 0.00309636234, -2.46514456638],
+    ]
+)  # fmt: skip
+
+
+def nearest(path: Path, configurations: Array, folder: Path) -> Array:
+    """How far (2, N) the nearest row is from each of some hundreds, in both languages."""
+    arm, header = emitted_in_both(Request(path, name="wrist"), folder)
     random = np.random.default_rng(1)
-    q = BETWEEN[random.integers(len(BETWEEN), size=400)]
-    q = q + random.normal(size=q.shape) * 10.0 ** random.uniform(-7, -5, (400, 1))
+    q = configurations[np.arange(300) % len(configurations)]
+    q = q + random.normal(size=q.shape) * 10.0 ** random.uniform(-7, -5, (len(q), 1))
     poses = arm.forward(q)
     batch, _, _ = arm.solve_batch(poses)
+    gaps = []
     for found in (header.solve_many(poses).q, batch):
         off = np.abs((found - q[:, None] + np.pi) % (2.0 * np.pi) - np.pi).max(axis=2)
-        assert np.where(np.isnan(off), np.inf, off).min(axis=1).max() < 1e-3
+        gaps.append(np.where(np.isnan(off), np.inf, off).min(axis=1))
+    return np.array(gaps)
+
+
+def test_solutions_between_those_of_the_closed_form_are_found(tmp_path: Path) -> None:
+    path = serial_urdf(tmp_path / "wrist.urdf", ORIGINS, axes=AXES, limit=3.1)
+    assert nearest(path, BETWEEN, tmp_path).max() < 1e-3
+
+
+def test_solutions_on_curves_that_cross_are_found(tmp_path: Path) -> None:
+    tool = ("0 0 -0.061525", "3.1416 0 -3.1416")
+    path = serial_urdf(tmp_path / "wrist.urdf", SHOULDER_TOO, tip=tool, limit=3.1)
+    assert nearest(path, CROSSING, tmp_path).max() < 1e-3

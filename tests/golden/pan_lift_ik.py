@@ -1144,7 +1144,7 @@ def _approach(arm: _Arm, q: Array, T: Array, side: Array) -> tuple[Array, Array]
 def _correct(arm: _Arm, at: _Reduced, T: Array) -> tuple[_Reduced, Array]:
     """After one step across the still directions, with what was left before it."""
     error, slope = _linearized(arm, at.q, T)
-    others = _across(slope, at.still, arm.policy.least_damping)
+    others = _fold_pair_across(slope, at.still, arm.policy.least_damping)
     sides = np.empty((*error.shape, 3))
     sides[:, :, 0], sides[:, :, 1], sides[:, :, 2] = error, at.out, others.flow
     taken, going = others.take_away(sides)
@@ -1170,10 +1170,10 @@ def _oriented(out: Array, others: _Others) -> Array:
 
 def _others(arm: _Arm, slope: Array, still: Array) -> _Others:
     damping = arm.policy.least_damping
-    return _across(slope, _still(slope, still, damping), damping)
+    return _fold_pair_across(slope, _still(slope, still, damping), damping)
 
 
-def _across(slope: Array, still: Array, damping: float) -> _Others:
+def _fold_pair_across(slope: Array, still: Array, damping: float) -> _Others:
     flow = np.matmul(slope, still[:, :, None])[:, :, 0]
     V = slope - flow[:, :, None] * still[:, None, :]
     normal = V.transpose(0, 2, 1) @ V + still[:, :, None] * still[:, None, :]
@@ -1821,6 +1821,61 @@ def _turned_inside(arm: _Arm, q: Array) -> Array:
     return out
 
 
+# Curves that cross others, on which all but one direction of the pose's error is taken away: there two
+# directions hardly move the pose.
+
+
+_curve_crossings_MOST = 4  # crossings of a curve
+_HALVES = 4  # by which they are found
+_ASIDE = 0.4  # rad or m: so far from a crossing curves are apart
+
+
+def _beside_crossings(arm: _Arm, parts: _Parts, T: Array) -> tuple[_Index, Array]:
+    """Rows (n, dof) beside places where others cross the curves of some parts, and whose these are (n,)."""
+    owner = parts.owner
+    if not len(owner):
+        return owner, parts.a.q
+    sense = _keeps(arm, parts.a, T[owner])
+    crossing = np.flatnonzero(sense != _keeps(arm, parts.b, T[owner]))
+    crossing = crossing[np.argsort(owner[crossing], kind="stable")]
+    crossing = crossing[_places(owner[crossing]) < _curve_crossings_MOST]
+    if not len(crossing):
+        return owner[crossing], parts.a.q[crossing]
+    parts, sense = _some_of(parts, crossing), sense[crossing]
+    aim = T[parts.owner]
+    for _ in range(_HALVES):
+        middle = _between(arm, parts, np.full(len(parts.owner), 0.5), T)
+        before = _keeps(arm, middle, aim) == sense
+        parts = parts._replace(
+            a=_chosen(before, middle, parts.a), b=_chosen(before, parts.b, middle)
+        )
+    other = np.linalg.svd(_curve_crossings_across(arm, parts.a, aim))[2][:, -2]
+    step = _ASIDE / np.abs(other).max(axis=1)[:, None] * other
+    return parts.owner, _moved_rows(arm, parts.a.q, step)
+
+
+def _curve_crossings_across(arm: _Arm, at: _Reduced, T: Array) -> Array:
+    """What directions across the still ones do to the pose (k, m, n)."""
+    _, slope = _linearized(arm, at.q, T)
+    flow = np.matmul(slope, at.still[:, :, None])
+    return np.asarray(slope - flow * at.still[:, None, :])
+
+
+def _keeps(arm: _Arm, at: _Reduced, T: Array) -> _Flags:
+    """Whether what the others do to the pose, with `out` for the still one, keeps orientation."""
+    V = _curve_crossings_across(arm, at, T)
+    if V.shape[1] != V.shape[2]:
+        return np.ones(len(V), dtype=bool)
+    turned = V + at.out[:, :, None] * at.still[:, None, :]
+    return np.asarray(np.linalg.det(turned) >= 0.0)
+
+
+def _chosen(some: _Flags, one: _Reduced, other: _Reduced) -> _Reduced:
+    """The first of two where `some` (k,) is set."""
+    pairs = zip(one, other)
+    return _Reduced(*(np.where(some.reshape(-1, *[1] * (a.ndim - 1)), a, b) for a, b in pairs))
+
+
 # Solutions on what is a continuum of the geometry that was solved, and none of the file's.
 
 
@@ -1861,7 +1916,8 @@ def _rows_around(arm: _Arm, q: Array, T: Array, broken: _Flags) -> tuple[_Flags,
 
 
 def _trace(arm: _Arm, q: Array, T: Array) -> _Traced:
-    """The curves through rows q (k, dof) towards aims T (k, ...), once around, or to both their ends."""
+    """The curves through rows q (k, dof) towards aims T (k, ...), once around, or to both their ends, and
+    others that cross broken ones."""
     asked = np.concatenate([q, T.reshape(len(q), -1)], axis=1)
     _, first, again = np.unique(asked, axis=0, return_index=True, return_inverse=True)
     again = again.reshape(-1)
@@ -1877,9 +1933,28 @@ def _traced(arm: _Arm, q: Array, T: Array) -> _Traced:
     steps = np.bincount(parts.owner, minlength=len(q))
     curve = steps >= _LEAST
     broken = curve & (worst >= arm.policy.arrived)
-    parts = _joined(parts, ends)
-    found = _look(arm, _some_of(parts, broken[parts.owner]), T, steps)
-    return _Traced(curve, broken, *found)
+    here = _some_of(parts, broken[parts.owner])
+    both = _joined(here, _some_of(ends, broken[ends.owner]), _across(arm, here, T))
+    return _Traced(curve, broken, *_look(arm, both, T, steps))
+
+
+def _across(arm: _Arm, parts: _Parts, T: Array) -> _Parts:
+    """The parts of broken curves that cross those of some parts."""
+    owner, q = _beside_crossings(arm, parts, T)
+    none: _Parts = _some_of(parts, owner[:0])
+    if not len(owner):
+        return none
+    first = _samples_beside(arm, q, T[owner])
+    fresh = ~_on_curves(arm, parts, owner, first.q, T)
+    first, owner = _some_of(first, fresh), owner[fresh]
+    if not len(owner):
+        return none
+    more, ends, worst = _follow(arm, first, T[owner])
+    broken = np.bincount(more.owner, minlength=len(owner)) >= _LEAST
+    broken &= worst >= arm.policy.arrived
+    more = _joined(_some_of(more, broken[more.owner]), _some_of(ends, broken[ends.owner]))
+    out: _Parts = more._replace(owner=owner[more.owner])
+    return out
 
 
 def _followed(arm: _Arm, q: Array, T: Array) -> tuple[_Parts, _Parts, Array]:

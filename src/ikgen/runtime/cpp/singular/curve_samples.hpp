@@ -18,7 +18,7 @@ template <class Arm> struct CurveSamples {
   };
 
   Fold fold;
-  int samples = 600;  // that are left to be taken
+  int samples = 1200;  // that are left to be taken
 
   static constexpr double kSmall = 4e-15;  // what is left at a solution, at most, by round-off
 

@@ -14,11 +14,13 @@ namespace ikgen_runtime {
 template <class Arm> struct FoldPair {
   static constexpr MovingJoints<Arm> kJoints{};
   static constexpr int kMoving = MovingJoints<Arm>::kCount, kEquations = PoseError<Arm>::kCount;
+  static constexpr bool kSquare = kEquations == kMoving;
   using Vector = double[kMoving];
 
   HeldAim<Arm> aim;
   Vector still;             // unit direction in which the pose moves least
   double out[kEquations];  // unit direction of the error in which no other moves it
+  double moved[kEquations][kMoving];  // what the others do to it where it was corrected last
 
   // What directions across some leave of three errors, a column each, and how they go.
   struct Taken {
@@ -104,6 +106,7 @@ template <class Arm> struct FoldPair {
     const PoseError<Arm> at(q, aim);
     if (anew) find_still(at);
     const Others others(still, at);
+    std::copy_n(&others.V[0][0], kEquations * kMoving, &moved[0][0]);
     const Taken taken(others, at.error, out, others.flow);
     double remains = 0.0;
     for (int e = 0; e < kEquations; ++e) {
@@ -138,6 +141,9 @@ template <class Arm> struct FoldPair {
   bool others_above(double bound, const double* q) const noexcept {
     return definite(Others(still, PoseError<Arm>(q, aim), -bound * bound).A);
   }
+
+  // Whether what the others did to the pose before the last correction, with `out` for the still one, keeps orientation.
+  bool in_sense() const noexcept { return keeps_sense(moved, out, still); }
 
   // How a direction moves an entry of the pose's error.
   static double flow_of(const PoseError<Arm>& at, int e, const Vector& along) noexcept {
@@ -181,17 +187,16 @@ template <class Arm> struct FoldPair {
 
     // 1 or -1, which takes `error` in the sense that goes with the still direction's, `along`: what the others do to the
     // pose, with `error` for the still one, keeps orientation, however far that turns from one sample to the next.
-    double sense([[maybe_unused]] const double* error, [[maybe_unused]] const double* along) const noexcept {
-      if constexpr (kEquations != kMoving) {
-        return 1.0;
-      } else {
-        double turned[kMoving][kMoving];
-        for (int e = 0; e < kEquations; ++e)
-          for (int k = 0; k < kMoving; ++k) turned[e][k] = V[e][k] + error[e] * along[k];
-        return keeps_orientation(turned) ? 1.0 : -1.0;
-      }
-    }
+    double sense(const double* error, const double* along) const noexcept { return keeps_sense(V, error, along) ? 1.0 : -1.0; }
   };
+
+  // Of as many joints as equations.
+  static bool keeps_sense(const double (&V)[kEquations][kMoving], const double* error, const double* along) noexcept {
+    double turned[kMoving][kMoving] = {};
+    for (int e = 0; e < kEquations && kSquare; ++e)
+      for (int k = 0; k < kMoving; ++k) turned[e][k] = V[e][k] + error[e] * along[k];
+    return keeps_orientation(turned);
+  }
 
   static double make_unit(Vector& v) noexcept {
     double square = 0.0;

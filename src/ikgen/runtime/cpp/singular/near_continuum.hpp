@@ -55,15 +55,13 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
       met = count;
       return Kind::Known;
     }
-    const int known = passed.count;
-    double worst = std::abs(first.left);
-    steps = 0.0;
-    if (!follow(first, 1.0, worst, passed)) follow(first, -1.0, worst, passed);
-    const Kind kind = steps < kLeast ? Kind::None : worst >= Policy::kArrived ? Kind::Broken : Kind::Whole;
+    crossings = 0;
+    const Kind kind = follow_both(first, passed);
+    const int own = passing;
+    if (kind == Kind::Broken && !lost)
+      for (int i = 0, noted = crossings; i < noted; ++i) follow_other(crossing[i], passed);
+    passing = own;
     met = count;
-    if (kind == Kind::Whole || (kind == Kind::None && !lost)) count = 0;
-    passing = passed.count - known;
-    if (kind != Kind::Broken || lost || !ended || passed.count > Passed::kSamples) passed.count = known;
     return kind;
   }
 
@@ -76,13 +74,86 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
   static constexpr double kFloor = 0.1, kAhead = 0.5;  // the shortest step, of Policy::kTryStep; how a step turns at most
   static constexpr double kOver = 0.05, kOn = 1e-6;  // of a part; rad or m off it
 
+  // A part of a curve on which others cross it: there two directions hardly move the pose, and the sense in which the others
+  // do with the still one for another turns round.
+  struct Crossing {
+    Sample from, to;
+    bool sense;  // at the first
+  };
+  static constexpr int kCrossings = 4, kHalves = 4;
+  static constexpr double kAside = 0.4;  // rad or m: so far from a crossing curves are apart
+  Crossing crossing[kCrossings];
+  int crossings = 0;
+
   double steps = 0.0;  // of Policy::kTryStep
   bool lost = false;   // where corrections converge from no step
   bool ended = true;   // whether they were followed to their ends
 
+  // To both sides of a sample, or once around.
+  Kind follow_both(const Sample& first, Passed& passed) noexcept {
+    const int known = passed.count, before = count;
+    double worst = std::abs(first.left);
+    steps = 0.0;
+    lost = false;
+    ended = true;
+    at(first.q, first, false);
+    const bool keeps = Curve::fold.in_sense();
+    if (!follow(first, 1.0, keeps, worst, passed)) follow(first, -1.0, keeps, worst, passed);
+    const Kind kind = steps < kLeast ? Kind::None : worst >= Policy::kArrived ? Kind::Broken : Kind::Whole;
+    met = count;
+    if (kind == Kind::Whole || (kind == Kind::None && !lost)) count = before;
+    passing = passed.count - known;
+    if (kind != Kind::Broken || lost || !ended || passed.count > Passed::kSamples) passed.count = known;
+    return kind;
+  }
+
+  // The curves that cross another, from both sides of the crossing, which is found by halves: so near it corrections may lead
+  // back to the one that is known.
+  void follow_other(const Crossing last, Passed& passed) noexcept {
+    Sample a = last.from, b = last.to;
+    for (int i = 0; i < kHalves; ++i) {
+      const Sample middle = Curve::part(a, b, 0.5);
+      (Curve::fold.in_sense() == last.sense ? a : b) = middle;
+    }
+    find_second(a);
+    const int before = crossings;
+    for (const double side : {kAside, -kAside}) {
+      double q[Arm::kDof], largest = 0.0;
+      std::copy_n(a.q, Arm::kDof, q);
+      for (const double x : a.still) largest = std::max(largest, std::abs(x));
+      for (int k = 0; k < Fold::kMoving; ++k) q[Fold::kJoints[k]] += side / largest * a.still[k];
+      for (const bool anew : {false, true}) {
+        const Sample first = at(q, a, anew);
+        if (first.on && passed_part(passed, first) == 0) follow_both(first, passed);
+      }
+    }
+    crossings = before;
+  }
+
+  // In the place of a sample's still direction the one across it in which the pose moves least, by inverse iteration.
+  void find_second(Sample& s) const noexcept {
+    const PoseError<Arm> there(s.q, Curve::fold.aim);
+    double N[Fold::kMoving][Fold::kMoving];
+    for (int a = 0; a < Fold::kMoving; ++a)
+      for (int b = 0; b <= a; ++b) {
+        N[a][b] = s.still[a] * s.still[b] + (a == b ? Policy::kLeastDamping : 0.0);
+        for (int e = 0; e < Fold::kEquations; ++e)
+          N[a][b] += there.slope[e][Fold::kJoints[a]] * there.slope[e][Fold::kJoints[b]];
+      }
+    factor(N);
+    for (int k = 0; k < Fold::kMoving; ++k) s.still[k] = 1.0 + 0.1 * k;
+    for (int i = 0; i < 4; ++i) {
+      substitute(N, s.still);
+      double square = 0.0;
+      for (const double x : s.still) square += x * x;
+      for (double& x : s.still) x /= std::sqrt(square);
+    }
+    for (double& x : s.out) x *= 0.1;  // of no sense yet
+  }
+
   // On from a sample, the fastest joint by Policy::kTryStep from one to the next, or by less where corrections converge
   // from there alone; whether it comes back to where it began.
-  bool follow(const Sample& first, double sense, double& worst, Passed& passed) noexcept {
+  bool follow(const Sample& first, double sense, bool keeps, double& worst, Passed& passed) noexcept {
     Sample b = first;
     if (sense < 0.0) Curve::turn_round(b);
     const Sample origin = b;
@@ -100,6 +171,7 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
       }
       for (int i = 0; i < Fold::kMoving; ++i) q[Fold::kJoints[i]] += reach / largest * course[i];
       const Sample c = at(q, b);
+      const bool now = Curve::fold.in_sense();
       if (!(c.on && ahead(b, c, reach))) {
         if (reach < kFloor * Policy::kTryStep) {
           lost = true;
@@ -115,6 +187,8 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
       steps += reach / Policy::kTryStep;
       passed.add(c, false);
       worst = std::max(worst, std::abs(c.left));
+      if (now != keeps && crossings < kCrossings) crossing[crossings++] = {b, c, keeps};
+      keeps = now;
       if (is_solution(c)) keep(c);
       look(b, c);
       if (k > 1 && back(origin, b)) return true;

@@ -17,6 +17,7 @@ from ikgen.runtime.python.newton.arm_newton import refined
 from ikgen.runtime.python.newton.refinement import least_singular
 from ikgen.runtime.python.rows.row_links import differences
 from ikgen.runtime.python.rows.solution_rows import places
+from ikgen.runtime.python.singular.curve_crossings import beside_crossings
 from ikgen.runtime.python.singular.curve_parts import BEYOND, Parts, between, look
 from ikgen.runtime.python.singular.curve_samples import sampled, samples_beside
 from ikgen.runtime.python.singular.fold_pair import Reduced
@@ -63,8 +64,8 @@ def rows_around(arm: Arm, q: Array, T: Array, broken: Flags) -> tuple[Flags, Ind
 
 
 def trace(arm: Arm, q: Array, T: Array) -> Traced:
-    """The curves through rows q (k, dof) towards aims T (k, ...), once around, or to both their ends; of
-    equal ones one is followed."""
+    """The curves through rows q (k, dof) towards aims T (k, ...), once around, or to both their ends, and
+    others that cross broken ones; of equal ones one is followed."""
     asked = np.concatenate([q, T.reshape(len(q), -1)], axis=1)
     _, first, again = np.unique(asked, axis=0, return_index=True, return_inverse=True)
     again = again.reshape(-1)
@@ -80,9 +81,28 @@ def _traced(arm: Arm, q: Array, T: Array) -> Traced:
     steps = np.bincount(parts.owner, minlength=len(q))
     curve = steps >= LEAST
     broken = curve & (worst >= arm.policy.arrived)
-    parts = joined(parts, ends)
-    found = look(arm, some_of(parts, broken[parts.owner]), T, steps)
-    return Traced(curve, broken, *found)
+    here = some_of(parts, broken[parts.owner])
+    both = joined(here, some_of(ends, broken[ends.owner]), _across(arm, here, T))
+    return Traced(curve, broken, *look(arm, both, T, steps))
+
+
+def _across(arm: Arm, parts: Parts, T: Array) -> Parts:
+    """The parts of broken curves that cross those of some parts."""
+    owner, q = beside_crossings(arm, parts, T)
+    none: Parts = some_of(parts, owner[:0])
+    if not len(owner):
+        return none
+    first = samples_beside(arm, q, T[owner])
+    fresh = ~on_curves(arm, parts, owner, first.q, T)
+    first, owner = some_of(first, fresh), owner[fresh]
+    if not len(owner):
+        return none
+    more, ends, worst = _follow(arm, first, T[owner])
+    broken = np.bincount(more.owner, minlength=len(owner)) >= LEAST
+    broken &= worst >= arm.policy.arrived
+    more = joined(some_of(more, broken[more.owner]), some_of(ends, broken[ends.owner]))
+    out: Parts = more._replace(owner=owner[more.owner])
+    return out
 
 
 def followed(arm: Arm, q: Array, T: Array) -> tuple[Parts, Parts, Array]:
