@@ -1215,9 +1215,9 @@ template <class Arm> struct FoldPair {
 
   static bool keeps_sense(const double (&V)[kEquations][kMoving], const double* error, const double* along) noexcept {
     double turned[kMoving][kMoving] = {};
-    for (int e = 0; e < kEquations && kSquare; ++e)
+    for (int e = 0; e < kMoving; ++e)
       for (int k = 0; k < kMoving; ++k) turned[e][k] = V[e][k] + error[e] * along[k];
-    return keeps_orientation(turned);
+    return !kSquare || keeps_orientation(turned);
   }
 
   static double make_unit(Vector& v) noexcept {
@@ -1610,9 +1610,9 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
     }
     crossings = 0;
     const Kind kind = follow_both(first, passed);
+    if (kind != Kind::Broken || lost) return kind;
     const int own = passing;
-    if (kind == Kind::Broken && !lost)
-      for (int i = 0, noted = crossings; i < noted; ++i) follow_other(crossing[i], passed);
+    for (int i = 0, noted = crossings; i < noted; ++i) follow_other(crossing[i], passed);
     passing = own;
     met = count;
     return kind;
@@ -1645,8 +1645,11 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
     steps = 0.0;
     lost = false;
     ended = true;
-    at(first.q, first, false);
-    const bool keeps = Curve::fold.in_sense();
+    bool keeps = true;
+    if constexpr (Fold::kSquare) {
+      at(first.q, first, false);
+      keeps = Curve::fold.in_sense();
+    }
     if (!follow(first, 1.0, keeps, worst, passed)) follow(first, -1.0, keeps, worst, passed);
     const Kind kind = steps < kLeast ? Kind::None : worst >= Policy::kArrived ? Kind::Broken : Kind::Whole;
     met = count;

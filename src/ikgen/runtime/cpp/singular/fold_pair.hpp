@@ -190,12 +190,12 @@ template <class Arm> struct FoldPair {
     double sense(const double* error, const double* along) const noexcept { return keeps_sense(V, error, along) ? 1.0 : -1.0; }
   };
 
-  // Of as many joints as equations.
+  // Of fewer joints than equations nothing tells.
   static bool keeps_sense(const double (&V)[kEquations][kMoving], const double* error, const double* along) noexcept {
     double turned[kMoving][kMoving] = {};
-    for (int e = 0; e < kEquations && kSquare; ++e)
+    for (int e = 0; e < kMoving; ++e)
       for (int k = 0; k < kMoving; ++k) turned[e][k] = V[e][k] + error[e] * along[k];
-    return keeps_orientation(turned);
+    return !kSquare || keeps_orientation(turned);
   }
 
   static double make_unit(Vector& v) noexcept {

@@ -57,9 +57,9 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
     }
     crossings = 0;
     const Kind kind = follow_both(first, passed);
+    if (kind != Kind::Broken || lost) return kind;
     const int own = passing;
-    if (kind == Kind::Broken && !lost)
-      for (int i = 0, noted = crossings; i < noted; ++i) follow_other(crossing[i], passed);
+    for (int i = 0, noted = crossings; i < noted; ++i) follow_other(crossing[i], passed);
     passing = own;
     met = count;
     return kind;
@@ -96,8 +96,11 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
     steps = 0.0;
     lost = false;
     ended = true;
-    at(first.q, first, false);
-    const bool keeps = Curve::fold.in_sense();
+    bool keeps = true;
+    if constexpr (Fold::kSquare) {
+      at(first.q, first, false);
+      keeps = Curve::fold.in_sense();
+    }
     if (!follow(first, 1.0, keeps, worst, passed)) follow(first, -1.0, keeps, worst, passed);
     const Kind kind = steps < kLeast ? Kind::None : worst >= Policy::kArrived ? Kind::Broken : Kind::Whole;
     met = count;
