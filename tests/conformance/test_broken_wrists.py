@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from tests.support.both_languages import emitted_in_both
+from tests.support.row_gaps import gaps_in_both
 from tests.support.serial_urdf import serial_urdf
 from tests.support.solving import NO_COMPILER
 
@@ -39,8 +40,6 @@ BETWEEN = np.array(
         [2.6172615985, 1.4646689679, 1.5958569706, 1.7177986402, 0.0001266857, 0.3887287303],
     ]
 )
-
-
 SHOULDER_TOO = (  # axes that nearly meet at the shoulder as well
     ("0 0 0.156425", "-3.1416 0 0"),
     ("0 0.005375 -0.12838", "1.5708 0 0"),
@@ -61,27 +60,21 @@ CROSSING = np.array(  # where the wrist's broken continuum crosses the shoulder'
 )  # fmt: skip
 
 
-def nearest(path: Path, configurations: Array, folder: Path) -> Array:
-    """How far (2, N) the nearest row is from each of some hundreds, in both languages."""
+def gaps(path: Path, configurations: Array, folder: Path) -> Array:
+    """How far (2, N) the nearest row is from each of some hundreds beside these, in both languages."""
     arm, header = emitted_in_both(Request(path, name="wrist"), folder)
     random = np.random.default_rng(1)
     q = configurations[np.arange(300) % len(configurations)]
     q = q + random.normal(size=q.shape) * 10.0 ** random.uniform(-7, -5, (len(q), 1))
-    poses = arm.forward(q)
-    batch, _, _ = arm.solve_batch(poses)
-    gaps = []
-    for found in (header.solve_many(poses).q, batch):
-        off = np.abs((found - q[:, None] + np.pi) % (2.0 * np.pi) - np.pi).max(axis=2)
-        gaps.append(np.where(np.isnan(off), np.inf, off).min(axis=1))
-    return np.array(gaps)
+    return gaps_in_both(arm, header, q)
 
 
 def test_solutions_between_those_of_the_closed_form_are_found(tmp_path: Path) -> None:
     path = serial_urdf(tmp_path / "wrist.urdf", ORIGINS, axes=AXES, limit=3.1)
-    assert nearest(path, BETWEEN, tmp_path).max() < 1e-3
+    assert gaps(path, BETWEEN, tmp_path).max() < 1e-3
 
 
 def test_solutions_on_curves_that_cross_are_found(tmp_path: Path) -> None:
     tool = ("0 0 -0.061525", "3.1416 0 -3.1416")
     path = serial_urdf(tmp_path / "wrist.urdf", SHOULDER_TOO, tip=tool, limit=3.1)
-    assert nearest(path, CROSSING, tmp_path).max() < 1e-3
+    assert gaps(path, CROSSING, tmp_path).max() < 1e-3

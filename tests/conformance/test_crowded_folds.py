@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from tests.support.both_languages import emitted_in_both
+from tests.support.row_gaps import gaps_in_both
 from tests.support.serial_urdf import serial_urdf
 from tests.support.solving import NO_COMPILER
 
@@ -17,8 +17,6 @@ pytestmark = [
     pytest.mark.usefixtures("solved_once"),
     pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "compiles"),
 ]
-
-Array = NDArray[np.float64]
 
 FIVE = (
     ("-0.01125 0 0.034", "0 0 0"),
@@ -46,22 +44,13 @@ FOUR = (  # right angles and half turns as a file of a kit has them
 )
 
 
-def gaps(found: Array, q: Array) -> Array:
-    """How far (N,) the nearest of the rows found (N, M, dof) is from q (N, dof)."""
-    off = np.abs((found - q[:, None] + np.pi) % (2.0 * np.pi) - np.pi).max(axis=2)
-    return np.asarray(np.where(np.isnan(off), np.inf, off).min(axis=1))
-
-
 def test_a_row_beside_a_known_pair_takes_no_place(tmp_path: Path) -> None:
     axes, tip = ("0 0 1", "0 1 0", "0 1 0", "0 1 0", "1 0 0"), ("0.09193 -0.0016 0", "0 0 0")
     path = serial_urdf(tmp_path / "crowded.urdf", FIVE, axes=axes, tip=tip, limit=6.283185307179586)
     arm, header = emitted_in_both(Request(path, name="crowded"), tmp_path)
     random = np.random.default_rng(1)
     q = TWO_PAIRS[random.integers(3, size=1500)] + random.normal(size=(1500, 5)) * 1e-8
-    poses = arm.forward(q)
-    batch, _, _ = arm.solve_batch(poses, limits=False)
-    for found in (header.solve_many(poses, limits=False).q, batch):
-        assert gaps(found, q).max() < 1e-6
+    assert gaps_in_both(arm, header, q, limits=False).max() < 1e-6
 
 
 def test_all_four_on_one_curve_are_found(tmp_path: Path) -> None:
@@ -82,7 +71,4 @@ def test_all_four_on_one_curve_are_found(tmp_path: Path) -> None:
     q[:, 2] = sign[0] * 10.0 ** random.uniform(-2.5, -2.0, 3000)
     lean = sign[1] * 10.0 ** random.uniform(-4.5, -4.0, 3000)
     q[:, 3] = lean - 0.5 * np.pi - q[:, 1] - q[:, 2]
-    poses = arm.forward(q)
-    batch, _, _ = arm.solve_batch(poses, limits=False)
-    for found in (header.solve_many(poses, limits=False).q, batch):
-        assert gaps(found, q).max() < 1e-4
+    assert gaps_in_both(arm, header, q, limits=False).max() < 1e-4

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from tests.support.both_languages import emitted_in_both
+from tests.support.row_gaps import gaps_in_both
 from tests.support.serial_urdf import serial_urdf
 from tests.support.solving import NO_COMPILER
 
@@ -71,8 +72,4 @@ def test_a_root_of_what_a_double_root_leaves_is_taken(tmp_path: Path) -> None:
     q = random.uniform(-np.pi, np.pi, (300, 6))
     q[:, 1:3] = random.choice([0.0, np.pi], (300, 2))
     q[150:] += 10.0 ** random.uniform(-12.0, -6.0, (150, 1)) * random.normal(size=(150, 6))
-    poses = arm.forward(q)
-    rows, (batch, _, _) = header.solve_many(poses), arm.solve_batch(poses)
-    for found in (rows.q, batch):
-        gap = np.abs(np.remainder(found - q[:, None] + np.pi, 2.0 * np.pi) - np.pi).max(axis=2)
-        assert np.nanmin(gap, axis=1).max() < 2e-3  # solutions lie as close together
+    assert gaps_in_both(arm, header, q).max() < 2e-3  # solutions lie as close together
