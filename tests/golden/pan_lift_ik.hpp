@@ -1063,7 +1063,6 @@ template <class Arm> struct SingularValue {
 template <class Arm> struct FoldPair {
   static constexpr MovingJoints<Arm> kJoints{};
   static constexpr int kMoving = MovingJoints<Arm>::kCount, kEquations = PoseError<Arm>::kCount;
-  static constexpr bool kSquare = kEquations == kMoving;
   using Vector = double[kMoving];
 
   HeldAim<Arm> aim;
@@ -1151,7 +1150,8 @@ template <class Arm> struct FoldPair {
       out[e] = taken.rest[e][1];
       remains += out[e] * out[e];
     }
-    const double inverse = (remains >= kTurned ? 1.0 : others.sense(out, still)) / std::sqrt(remains);
+    const double sense = remains >= kTurned || in_sense() ? 1.0 : -1.0;  // however far it turned since the sample before
+    const double inverse = sense / std::sqrt(remains);
     left = slope = 0.0;
     for (int e = 0; e < kEquations; ++e) {
       out[e] *= inverse;
@@ -1173,7 +1173,29 @@ template <class Arm> struct FoldPair {
     }
   }
 
-  bool in_sense() const noexcept { return keeps_sense(moved, out, still); }
+  bool in_sense() const noexcept {
+    double turned[kMoving][kMoving];
+    for (int e = 0; e < kMoving; ++e)
+      for (int k = 0; k < kMoving; ++k) turned[e][k] = moved[e][k] + out[e] * still[k];
+    return kEquations != kMoving || keeps_orientation(turned);
+  }
+
+  static void factor_normal(const PoseError<Arm>& at, double (&N)[kMoving][kMoving], const double* stiff = nullptr) noexcept {
+    for (int a = 0; a < kMoving; ++a)
+      for (int b = 0; b <= a; ++b) {
+        N[a][b] = (stiff ? stiff[a] * stiff[b] : 0.0) + (a == b ? Arm::Policy::kLeastDamping : 0.0);
+        for (int e = 0; e < kEquations; ++e) N[a][b] += at.slope[e][kJoints[a]] * at.slope[e][kJoints[b]];
+      }
+    factor(N);
+  }
+
+  static double make_unit(Vector& v) noexcept {
+    double square = 0.0;
+    for (const double x : v) square += x * x;
+    const double inverse = 1.0 / std::sqrt(square);
+    for (double& x : v) x *= inverse;
+    return inverse;
+  }
 
   static double flow_of(const PoseError<Arm>& at, int e, const Vector& along) noexcept {
     double flow = 0.0;
@@ -1209,33 +1231,11 @@ template <class Arm> struct FoldPair {
         }
       factor(A);
     }
-
-    double sense(const double* error, const double* along) const noexcept { return keeps_sense(V, error, along) ? 1.0 : -1.0; }
   };
-
-  static bool keeps_sense(const double (&V)[kEquations][kMoving], const double* error, const double* along) noexcept {
-    double turned[kMoving][kMoving] = {};
-    for (int e = 0; e < kMoving; ++e)
-      for (int k = 0; k < kMoving; ++k) turned[e][k] = V[e][k] + error[e] * along[k];
-    return !kSquare || keeps_orientation(turned);
-  }
-
-  static double make_unit(Vector& v) noexcept {
-    double square = 0.0;
-    for (const double x : v) square += x * x;
-    const double inverse = 1.0 / std::sqrt(square);
-    for (double& x : v) x *= inverse;
-    return inverse;
-  }
 
   void find_still(const PoseError<Arm>& at) noexcept {
     double N[kMoving][kMoving];
-    for (int a = 0; a < kMoving; ++a)
-      for (int b = 0; b <= a; ++b) {
-        N[a][b] = a == b ? Arm::Policy::kLeastDamping : 0.0;
-        for (int e = 0; e < kEquations; ++e) N[a][b] += at.slope[e][kJoints[a]] * at.slope[e][kJoints[b]];
-      }
-    factor(N);
+    factor_normal(at, N);
     for (int i = 0; i < 2; ++i) {
       substitute(N, still);
       substitute(N, still);
@@ -1603,16 +1603,18 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
 
   Kind trace(const double* start, Passed& passed) noexcept {
     const Sample first = at(start);
+    const bool keeps = Curve::fold.in_sense();
     if (const int end = passed_part(passed, first); end > 0) {
       look_beside(passed.sample[end - 1], first, passed.sample[end]);
       met = count;
       return Kind::Known;
     }
     crossings = 0;
-    const Kind kind = follow_both(first, passed);
+    const Kind kind = follow_both(first, keeps, passed);
     if (kind != Kind::Broken || lost) return kind;
-    const int own = passing;
-    for (int i = 0, noted = crossings; i < noted; ++i) follow_other(crossing[i], passed);
+    const int noted = crossings, own = passing;
+    crossings = kCrossings;  // those of the others do not count
+    for (int i = 0; i < noted; ++i) follow_other(crossing[i], passed);
     passing = own;
     met = count;
     return kind;
@@ -1639,17 +1641,12 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
   bool lost = false;   // where corrections converge from no step
   bool ended = true;   // whether they were followed to their ends
 
-  Kind follow_both(const Sample& first, Passed& passed) noexcept {
+  Kind follow_both(const Sample& first, bool keeps, Passed& passed) noexcept {
     const int known = passed.count, before = count;
     double worst = std::abs(first.left);
     steps = 0.0;
     lost = false;
     ended = true;
-    bool keeps = true;
-    if constexpr (Fold::kSquare) {
-      at(first.q, first, false);
-      keeps = Curve::fold.in_sense();
-    }
     if (!follow(first, 1.0, keeps, worst, passed)) follow(first, -1.0, keeps, worst, passed);
     const Kind kind = steps < kLeast ? Kind::None : worst >= Policy::kArrived ? Kind::Broken : Kind::Whole;
     met = count;
@@ -1659,14 +1656,13 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
     return kind;
   }
 
-  void follow_other(const Crossing last, Passed& passed) noexcept {
+  void follow_other(const Crossing& last, Passed& passed) noexcept {
     Sample a = last.from, b = last.to;
     for (int i = 0; i < kHalves; ++i) {
       const Sample middle = Curve::part(a, b, 0.5);
       (Curve::fold.in_sense() == last.sense ? a : b) = middle;
     }
     find_second(a);
-    const int before = crossings;
     for (const double side : {kAside, -kAside}) {
       double q[Arm::kDof], largest = 0.0;
       std::copy_n(a.q, Arm::kDof, q);
@@ -1674,28 +1670,19 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
       for (int k = 0; k < Fold::kMoving; ++k) q[Fold::kJoints[k]] += side / largest * a.still[k];
       for (const bool anew : {false, true}) {
         const Sample first = at(q, a, anew);
-        if (first.on && passed_part(passed, first) == 0) follow_both(first, passed);
+        const bool keeps = Curve::fold.in_sense();
+        if (first.on && passed_part(passed, first) == 0) follow_both(first, keeps, passed);
       }
     }
-    crossings = before;
   }
 
   void find_second(Sample& s) const noexcept {
-    const PoseError<Arm> there(s.q, Curve::fold.aim);
     double N[Fold::kMoving][Fold::kMoving];
-    for (int a = 0; a < Fold::kMoving; ++a)
-      for (int b = 0; b <= a; ++b) {
-        N[a][b] = s.still[a] * s.still[b] + (a == b ? Policy::kLeastDamping : 0.0);
-        for (int e = 0; e < Fold::kEquations; ++e)
-          N[a][b] += there.slope[e][Fold::kJoints[a]] * there.slope[e][Fold::kJoints[b]];
-      }
-    factor(N);
+    Fold::factor_normal(PoseError<Arm>(s.q, Curve::fold.aim), N, s.still);
     for (int k = 0; k < Fold::kMoving; ++k) s.still[k] = 1.0 + 0.1 * k;
     for (int i = 0; i < 4; ++i) {
       substitute(N, s.still);
-      double square = 0.0;
-      for (const double x : s.still) square += x * x;
-      for (double& x : s.still) x /= std::sqrt(square);
+      Fold::make_unit(s.still);
     }
     for (double& x : s.out) x *= 0.1;  // of no sense yet
   }

@@ -1144,7 +1144,7 @@ def _approach(arm: _Arm, q: Array, T: Array, side: Array) -> tuple[Array, Array]
 def _correct(arm: _Arm, at: _Reduced, T: Array) -> tuple[_Reduced, Array]:
     """After one step across the still directions, with what was left before it."""
     error, slope = _linearized(arm, at.q, T)
-    others = _fold_pair_across(slope, at.still, arm.policy.least_damping)
+    others = _across(slope, at.still, arm.policy.least_damping)
     sides = np.empty((*error.shape, 3))
     sides[:, :, 0], sides[:, :, 1], sides[:, :, 2] = error, at.out, others.flow
     taken, going = others.take_away(sides)
@@ -1160,24 +1160,37 @@ def _correct(arm: _Arm, at: _Reduced, T: Array) -> tuple[_Reduced, Array]:
 
 
 def _oriented(out: Array, others: _Others) -> Array:
-    """Unit directions (k, m) in the sense that goes with the still ones'."""
+    """Unit directions (k, m) in the sense that goes with the still ones', however far `out` turned in a
+    step."""
     if others.V.shape[1] != others.V.shape[2]:
         return out
-    turned = others.V + out[:, :, None] * others.still[:, None, :]
+    return np.where(_keeps_sense(others.V, others.still, out)[:, None], out, -out)
+
+
+def _keeps_sense(V: Array, still: Array, out: Array) -> _Flags:
+    """Whether what others than the still directions (k, n) do to the pose, V (k, n, n), with `out` (k, n)
+    for the still ones, keeps orientation (k,)."""
+    turned = V + out[:, :, None] * still[:, None, :]
     with np.errstate(all="ignore"):
-        return np.where(np.linalg.det(turned)[:, None] < 0.0, -out, out)
+        return np.asarray(~(np.linalg.det(turned) < 0.0))
 
 
-def _others(arm: _Arm, slope: Array, still: Array) -> _Others:
+def _fold_pair_others(arm: _Arm, slope: Array, still: Array) -> _Others:
     damping = arm.policy.least_damping
-    return _fold_pair_across(slope, _still(slope, still, damping), damping)
+    return _across(slope, _still(slope, still, damping), damping)
 
 
-def _fold_pair_across(slope: Array, still: Array, damping: float) -> _Others:
-    flow = np.matmul(slope, still[:, :, None])[:, :, 0]
-    V = slope - flow[:, :, None] * still[:, None, :]
+def _across(slope: Array, still: Array, damping: float) -> _Others:
+    flow, V = _flow_and_others(slope, still)
     normal = V.transpose(0, 2, 1) @ V + still[:, :, None] * still[:, None, :]
     return _Others(still, flow, V, _damped(normal, damping))
+
+
+def _flow_and_others(slope: Array, still: Array) -> tuple[Array, Array]:
+    """What still directions (k, n) do to the pose (k, m), and the directions across them (k, m, n), by its
+    derivatives (k, m, n)."""
+    flow = np.matmul(slope, still[:, :, None])[:, :, 0]
+    return flow, slope - flow[:, :, None] * still[:, None, :]
 
 
 class _Stepped(NamedTuple):
@@ -1195,7 +1208,7 @@ def _step(arm: _Arm, q: Array, T: Array, side: Array, before: _Stepped | None) -
     """From q (k, dof) to one side, with directions in the sense of those of the step `before`."""
     error, slope = _linearized(arm, q, T)
     still = _generic(len(q), slope.shape[2]) if before is None else before.still
-    others = _others(arm, slope, still)
+    others = _fold_pair_others(arm, slope, still)
     there = others.moved(arm, q, np.zeros_like(still), _ALONG)
     _, beyond = _linearized(arm, there, T)
     turned = np.einsum("kej,kj->ke", beyond - slope, others.still) / _ALONG
@@ -1832,48 +1845,37 @@ _ASIDE = 0.4  # rad or m: so far from a crossing curves are apart
 
 def _beside_crossings(arm: _Arm, parts: _Parts, T: Array) -> tuple[_Index, Array]:
     """Rows (n, dof) beside places where others cross the curves of some parts, and whose these are (n,)."""
-    owner = parts.owner
-    if not len(owner):
-        return owner, parts.a.q
-    sense = _keeps(arm, parts.a, T[owner])
-    crossing = np.flatnonzero(sense != _keeps(arm, parts.b, T[owner]))
+    owner, a, b = parts.owner, parts.a, parts.b
+    if not len(owner) or a.out.shape != a.still.shape:
+        return owner[:0], a.q[:0]
+    sense = _keeps(arm, a, T[owner])
+    crossing = np.flatnonzero(sense != _keeps(arm, b, T[owner]))
     crossing = crossing[np.argsort(owner[crossing], kind="stable")]
     crossing = crossing[_places(owner[crossing]) < _curve_crossings_MOST]
     if not len(crossing):
-        return owner[crossing], parts.a.q[crossing]
+        return owner[:0], a.q[:0]
     parts, sense = _some_of(parts, crossing), sense[crossing]
-    aim = T[parts.owner]
+    aim, each = T[parts.owner], np.arange(len(crossing))
+    ends = _Reduced(*map(np.stack, zip(parts.a, parts.b)))
     for _ in range(_HALVES):
-        middle = _between(arm, parts, np.full(len(parts.owner), 0.5), T)
-        before = _keeps(arm, middle, aim) == sense
-        parts = parts._replace(
-            a=_chosen(before, middle, parts.a), b=_chosen(before, parts.b, middle)
-        )
-    other = np.linalg.svd(_curve_crossings_across(arm, parts.a, aim))[2][:, -2]
+        now = parts._replace(a=_some_of(ends, 0), b=_some_of(ends, 1))
+        middle = _between(arm, now, np.full(len(each), 0.5), T)
+        side = (_keeps(arm, middle, aim) != sense).astype(np.intp)
+        for whole, part in zip(ends, middle):
+            whole[side, each] = part
+    at = _some_of(ends, 0)
+    other = np.linalg.svd(_others(arm, at, aim))[2][:, -2]
     step = _ASIDE / np.abs(other).max(axis=1)[:, None] * other
-    return parts.owner, _moved_rows(arm, parts.a.q, step)
-
-
-def _curve_crossings_across(arm: _Arm, at: _Reduced, T: Array) -> Array:
-    """What directions across the still ones do to the pose (k, m, n)."""
-    _, slope = _linearized(arm, at.q, T)
-    flow = np.matmul(slope, at.still[:, :, None])
-    return np.asarray(slope - flow * at.still[:, None, :])
+    return parts.owner, _moved_rows(arm, at.q, step)
 
 
 def _keeps(arm: _Arm, at: _Reduced, T: Array) -> _Flags:
-    """Whether what the others do to the pose, with `out` for the still one, keeps orientation."""
-    V = _curve_crossings_across(arm, at, T)
-    if V.shape[1] != V.shape[2]:
-        return np.ones(len(V), dtype=bool)
-    turned = V + at.out[:, :, None] * at.still[:, None, :]
-    return np.asarray(np.linalg.det(turned) >= 0.0)
+    return _keeps_sense(_others(arm, at, T), at.still, at.out)
 
 
-def _chosen(some: _Flags, one: _Reduced, other: _Reduced) -> _Reduced:
-    """The first of two where `some` (k,) is set."""
-    pairs = zip(one, other)
-    return _Reduced(*(np.where(some.reshape(-1, *[1] * (a.ndim - 1)), a, b) for a, b in pairs))
+def _others(arm: _Arm, at: _Reduced, T: Array) -> Array:
+    _, slope = _linearized(arm, at.q, T)
+    return _flow_and_others(slope, at.still)[1]
 
 
 # Solutions on what is a continuum of the geometry that was solved, and none of the file's.
@@ -1930,15 +1932,20 @@ def _trace(arm: _Arm, q: Array, T: Array) -> _Traced:
 def _traced(arm: _Arm, q: Array, T: Array) -> _Traced:
     """`_trace` of rows that differ."""
     parts, ends, worst = _followed(arm, q, T)
-    steps = np.bincount(parts.owner, minlength=len(q))
-    curve = steps >= _LEAST
-    broken = curve & (worst >= arm.policy.arrived)
-    here = _some_of(parts, broken[parts.owner])
-    both = _joined(here, _some_of(ends, broken[ends.owner]), _across(arm, here, T))
-    return _Traced(curve, broken, *_look(arm, both, T, steps))
+    steps, broken = _kinds(arm, parts, worst)
+    here, last = _some_of(parts, broken[parts.owner]), _some_of(ends, broken[ends.owner])
+    found = _look(arm, _joined(here, last, _crossing_parts(arm, here, T)), T, steps)
+    return _Traced(steps >= _LEAST, broken, *found)
 
 
-def _across(arm: _Arm, parts: _Parts, T: Array) -> _Parts:
+def _kinds(arm: _Arm, parts: _Parts, worst: Array) -> tuple[_Index, _Flags]:
+    """How many samples (k,) there are of what was followed, with the most (k,) that is left there, and
+    which are curves of the solved geometry that the file's arm has not."""
+    steps = np.bincount(parts.owner, minlength=len(worst))
+    return steps, (steps >= _LEAST) & (worst >= arm.policy.arrived)
+
+
+def _crossing_parts(arm: _Arm, parts: _Parts, T: Array) -> _Parts:
     """The parts of broken curves that cross those of some parts."""
     owner, q = _beside_crossings(arm, parts, T)
     none: _Parts = _some_of(parts, owner[:0])
@@ -1950,11 +1957,9 @@ def _across(arm: _Arm, parts: _Parts, T: Array) -> _Parts:
     if not len(owner):
         return none
     more, ends, worst = _follow(arm, first, T[owner])
-    broken = np.bincount(more.owner, minlength=len(owner)) >= _LEAST
-    broken &= worst >= arm.policy.arrived
-    more = _joined(_some_of(more, broken[more.owner]), _some_of(ends, broken[ends.owner]))
-    out: _Parts = more._replace(owner=owner[more.owner])
-    return out
+    _, broken = _kinds(arm, more, worst)
+    out: _Parts = _joined(*(_some_of(some, broken[some.owner]) for some in (more, ends)))
+    return out._replace(owner=owner[out.owner])
 
 
 def _followed(arm: _Arm, q: Array, T: Array) -> tuple[_Parts, _Parts, Array]:

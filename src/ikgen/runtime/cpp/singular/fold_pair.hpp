@@ -14,7 +14,6 @@ namespace ikgen_runtime {
 template <class Arm> struct FoldPair {
   static constexpr MovingJoints<Arm> kJoints{};
   static constexpr int kMoving = MovingJoints<Arm>::kCount, kEquations = PoseError<Arm>::kCount;
-  static constexpr bool kSquare = kEquations == kMoving;
   using Vector = double[kMoving];
 
   HeldAim<Arm> aim;
@@ -113,7 +112,8 @@ template <class Arm> struct FoldPair {
       out[e] = taken.rest[e][1];
       remains += out[e] * out[e];
     }
-    const double inverse = (remains >= kTurned ? 1.0 : others.sense(out, still)) / std::sqrt(remains);
+    const double sense = remains >= kTurned || in_sense() ? 1.0 : -1.0;  // however far it turned since the sample before
+    const double inverse = sense / std::sqrt(remains);
     left = slope = 0.0;
     for (int e = 0; e < kEquations; ++e) {
       out[e] *= inverse;
@@ -142,8 +142,33 @@ template <class Arm> struct FoldPair {
     return definite(Others(still, PoseError<Arm>(q, aim), -bound * bound).A);
   }
 
-  // Whether what the others did to the pose before the last correction, with `out` for the still one, keeps orientation.
-  bool in_sense() const noexcept { return keeps_sense(moved, out, still); }
+  // Whether what the others did to the pose before the last correction, with `out` for the still one, keeps orientation; of
+  // fewer joints than equations nothing tells.
+  bool in_sense() const noexcept {
+    double turned[kMoving][kMoving];
+    for (int e = 0; e < kMoving; ++e)
+      for (int k = 0; k < kMoving; ++k) turned[e][k] = moved[e][k] + out[e] * still[k];
+    return kEquations != kMoving || keeps_orientation(turned);
+  }
+
+  // The factors of the normal equations of a pose's derivatives, with a direction that is stiff, or none.
+  static void factor_normal(const PoseError<Arm>& at, double (&N)[kMoving][kMoving], const double* stiff = nullptr) noexcept {
+    for (int a = 0; a < kMoving; ++a)
+      for (int b = 0; b <= a; ++b) {
+        N[a][b] = (stiff ? stiff[a] * stiff[b] : 0.0) + (a == b ? Arm::Policy::kLeastDamping : 0.0);
+        for (int e = 0; e < kEquations; ++e) N[a][b] += at.slope[e][kJoints[a]] * at.slope[e][kJoints[b]];
+      }
+    factor(N);
+  }
+
+  // The inverse of how long it was.
+  static double make_unit(Vector& v) noexcept {
+    double square = 0.0;
+    for (const double x : v) square += x * x;
+    const double inverse = 1.0 / std::sqrt(square);
+    for (double& x : v) x *= inverse;
+    return inverse;
+  }
 
   // How a direction moves an entry of the pose's error.
   static double flow_of(const PoseError<Arm>& at, int e, const Vector& along) noexcept {
@@ -184,37 +209,12 @@ template <class Arm> struct FoldPair {
         }
       factor(A);
     }
-
-    // 1 or -1, which takes `error` in the sense that goes with the still direction's, `along`: what the others do to the
-    // pose, with `error` for the still one, keeps orientation, however far that turns from one sample to the next.
-    double sense(const double* error, const double* along) const noexcept { return keeps_sense(V, error, along) ? 1.0 : -1.0; }
   };
-
-  // Of fewer joints than equations nothing tells.
-  static bool keeps_sense(const double (&V)[kEquations][kMoving], const double* error, const double* along) noexcept {
-    double turned[kMoving][kMoving] = {};
-    for (int e = 0; e < kMoving; ++e)
-      for (int k = 0; k < kMoving; ++k) turned[e][k] = V[e][k] + error[e] * along[k];
-    return !kSquare || keeps_orientation(turned);
-  }
-
-  static double make_unit(Vector& v) noexcept {
-    double square = 0.0;
-    for (const double x : v) square += x * x;
-    const double inverse = 1.0 / std::sqrt(square);
-    for (double& x : v) x *= inverse;
-    return inverse;
-  }
 
   // By four steps of inverse iteration from what it was, which keeps its sense.
   void find_still(const PoseError<Arm>& at) noexcept {
     double N[kMoving][kMoving];
-    for (int a = 0; a < kMoving; ++a)
-      for (int b = 0; b <= a; ++b) {
-        N[a][b] = a == b ? Arm::Policy::kLeastDamping : 0.0;
-        for (int e = 0; e < kEquations; ++e) N[a][b] += at.slope[e][kJoints[a]] * at.slope[e][kJoints[b]];
-      }
-    factor(N);
+    factor_normal(at, N);
     for (int i = 0; i < 2; ++i) {
       substitute(N, still);
       substitute(N, still);

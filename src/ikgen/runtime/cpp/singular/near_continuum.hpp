@@ -50,16 +50,18 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
   // where it could not be followed.
   Kind trace(const double* start, Passed& passed) noexcept {
     const Sample first = at(start);
+    const bool keeps = Curve::fold.in_sense();
     if (const int end = passed_part(passed, first); end > 0) {
       look_beside(passed.sample[end - 1], first, passed.sample[end]);
       met = count;
       return Kind::Known;
     }
     crossings = 0;
-    const Kind kind = follow_both(first, passed);
+    const Kind kind = follow_both(first, keeps, passed);
     if (kind != Kind::Broken || lost) return kind;
-    const int own = passing;
-    for (int i = 0, noted = crossings; i < noted; ++i) follow_other(crossing[i], passed);
+    const int noted = crossings, own = passing;
+    crossings = kCrossings;  // those of the others do not count
+    for (int i = 0; i < noted; ++i) follow_other(crossing[i], passed);
     passing = own;
     met = count;
     return kind;
@@ -89,18 +91,13 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
   bool lost = false;   // where corrections converge from no step
   bool ended = true;   // whether they were followed to their ends
 
-  // To both sides of a sample, or once around.
-  Kind follow_both(const Sample& first, Passed& passed) noexcept {
+  // To both sides of a sample, or once around; keeps: the sense there.
+  Kind follow_both(const Sample& first, bool keeps, Passed& passed) noexcept {
     const int known = passed.count, before = count;
     double worst = std::abs(first.left);
     steps = 0.0;
     lost = false;
     ended = true;
-    bool keeps = true;
-    if constexpr (Fold::kSquare) {
-      at(first.q, first, false);
-      keeps = Curve::fold.in_sense();
-    }
     if (!follow(first, 1.0, keeps, worst, passed)) follow(first, -1.0, keeps, worst, passed);
     const Kind kind = steps < kLeast ? Kind::None : worst >= Policy::kArrived ? Kind::Broken : Kind::Whole;
     met = count;
@@ -112,14 +109,13 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
 
   // The curves that cross another, from both sides of the crossing, which is found by halves: so near it corrections may lead
   // back to the one that is known.
-  void follow_other(const Crossing last, Passed& passed) noexcept {
+  void follow_other(const Crossing& last, Passed& passed) noexcept {
     Sample a = last.from, b = last.to;
     for (int i = 0; i < kHalves; ++i) {
       const Sample middle = Curve::part(a, b, 0.5);
       (Curve::fold.in_sense() == last.sense ? a : b) = middle;
     }
     find_second(a);
-    const int before = crossings;
     for (const double side : {kAside, -kAside}) {
       double q[Arm::kDof], largest = 0.0;
       std::copy_n(a.q, Arm::kDof, q);
@@ -127,29 +123,20 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
       for (int k = 0; k < Fold::kMoving; ++k) q[Fold::kJoints[k]] += side / largest * a.still[k];
       for (const bool anew : {false, true}) {
         const Sample first = at(q, a, anew);
-        if (first.on && passed_part(passed, first) == 0) follow_both(first, passed);
+        const bool keeps = Curve::fold.in_sense();
+        if (first.on && passed_part(passed, first) == 0) follow_both(first, keeps, passed);
       }
     }
-    crossings = before;
   }
 
   // In the place of a sample's still direction the one across it in which the pose moves least, by inverse iteration.
   void find_second(Sample& s) const noexcept {
-    const PoseError<Arm> there(s.q, Curve::fold.aim);
     double N[Fold::kMoving][Fold::kMoving];
-    for (int a = 0; a < Fold::kMoving; ++a)
-      for (int b = 0; b <= a; ++b) {
-        N[a][b] = s.still[a] * s.still[b] + (a == b ? Policy::kLeastDamping : 0.0);
-        for (int e = 0; e < Fold::kEquations; ++e)
-          N[a][b] += there.slope[e][Fold::kJoints[a]] * there.slope[e][Fold::kJoints[b]];
-      }
-    factor(N);
+    Fold::factor_normal(PoseError<Arm>(s.q, Curve::fold.aim), N, s.still);
     for (int k = 0; k < Fold::kMoving; ++k) s.still[k] = 1.0 + 0.1 * k;
     for (int i = 0; i < 4; ++i) {
       substitute(N, s.still);
-      double square = 0.0;
-      for (const double x : s.still) square += x * x;
-      for (double& x : s.still) x /= std::sqrt(square);
+      Fold::make_unit(s.still);
     }
     for (double& x : s.out) x *= 0.1;  // of no sense yet
   }

@@ -103,12 +103,7 @@ template <class Arm> struct NearSurface {
   // The two directions that move the pose least, by inverse iteration.
   static void find_plane(const PoseError<Arm>& at, Sample& s) noexcept {
     double N[kMoving][kMoving];
-    for (int a = 0; a < kMoving; ++a)
-      for (int b = 0; b <= a; ++b) {
-        N[a][b] = a == b ? Policy::kLeastDamping : 0.0;
-        for (int e = 0; e < kEquations; ++e) N[a][b] += at.slope[e][kJoints[a]] * at.slope[e][kJoints[b]];
-      }
-    factor(N);
+    Fold::factor_normal(at, N);
     for (int k = 0; k < kMoving; ++k) {
       s.still[0][k] = 1.0 + 0.1 * k;
       s.still[1][k] = k % 2 == 0 ? 1.0 : -0.5;

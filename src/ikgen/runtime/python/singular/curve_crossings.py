@@ -11,7 +11,7 @@ from ikgen.runtime.python.arrays.array_types import Array, Flags, Index
 from ikgen.runtime.python.newton.arm_newton import linearized, moved_rows
 from ikgen.runtime.python.rows.solution_rows import places
 from ikgen.runtime.python.singular.curve_parts import Parts, between
-from ikgen.runtime.python.singular.fold_pair import Reduced
+from ikgen.runtime.python.singular.fold_pair import Reduced, flow_and_others, keeps_sense
 
 __all__ = ["beside_crossings"]
 
@@ -25,46 +25,35 @@ def beside_crossings(arm: Arm, parts: Parts, T: Array) -> tuple[Index, Array]:
     way along the second direction that hardly moves the pose.
 
     Where that one is passed, the sense turns round in which the others with the still one for what is left
-    move the pose."""
-    owner = parts.owner
-    if not len(owner):
-        return owner, parts.a.q
-    sense = _keeps(arm, parts.a, T[owner])
-    crossing = np.flatnonzero(sense != _keeps(arm, parts.b, T[owner]))
+    move the pose; of arms with fewer joints than equations nothing tells."""
+    owner, a, b = parts.owner, parts.a, parts.b
+    if not len(owner) or a.out.shape != a.still.shape:
+        return owner[:0], a.q[:0]
+    sense = _keeps(arm, a, T[owner])
+    crossing = np.flatnonzero(sense != _keeps(arm, b, T[owner]))
     crossing = crossing[np.argsort(owner[crossing], kind="stable")]
     crossing = crossing[places(owner[crossing]) < _MOST]
     if not len(crossing):
-        return owner[crossing], parts.a.q[crossing]
+        return owner[:0], a.q[:0]
     parts, sense = some_of(parts, crossing), sense[crossing]
-    aim = T[parts.owner]
+    aim, each = T[parts.owner], np.arange(len(crossing))
+    ends = Reduced(*map(np.stack, zip(parts.a, parts.b)))
     for _ in range(_HALVES):
-        middle = between(arm, parts, np.full(len(parts.owner), 0.5), T)
-        before = _keeps(arm, middle, aim) == sense
-        parts = parts._replace(
-            a=_chosen(before, middle, parts.a), b=_chosen(before, parts.b, middle)
-        )
-    other = np.linalg.svd(_across(arm, parts.a, aim))[2][:, -2]
+        now = parts._replace(a=some_of(ends, 0), b=some_of(ends, 1))
+        middle = between(arm, now, np.full(len(each), 0.5), T)
+        side = (_keeps(arm, middle, aim) != sense).astype(np.intp)
+        for whole, part in zip(ends, middle):
+            whole[side, each] = part
+    at = some_of(ends, 0)
+    other = np.linalg.svd(_others(arm, at, aim))[2][:, -2]
     step = _ASIDE / np.abs(other).max(axis=1)[:, None] * other
-    return parts.owner, moved_rows(arm, parts.a.q, step)
-
-
-def _across(arm: Arm, at: Reduced, T: Array) -> Array:
-    """What directions across the still ones do to the pose (k, m, n)."""
-    _, slope = linearized(arm, at.q, T)
-    flow = np.matmul(slope, at.still[:, :, None])
-    return np.asarray(slope - flow * at.still[:, None, :])
+    return parts.owner, moved_rows(arm, at.q, step)
 
 
 def _keeps(arm: Arm, at: Reduced, T: Array) -> Flags:
-    """Whether what the others do to the pose, with `out` for the still one, keeps orientation."""
-    V = _across(arm, at, T)
-    if V.shape[1] != V.shape[2]:
-        return np.ones(len(V), dtype=bool)
-    turned = V + at.out[:, :, None] * at.still[:, None, :]
-    return np.asarray(np.linalg.det(turned) >= 0.0)
+    return keeps_sense(_others(arm, at, T), at.still, at.out)
 
 
-def _chosen(some: Flags, one: Reduced, other: Reduced) -> Reduced:
-    """The first of two where `some` (k,) is set."""
-    pairs = zip(one, other)
-    return Reduced(*(np.where(some.reshape(-1, *[1] * (a.ndim - 1)), a, b) for a, b in pairs))
+def _others(arm: Arm, at: Reduced, T: Array) -> Array:
+    _, slope = linearized(arm, at.q, T)
+    return flow_and_others(slope, at.still)[1]

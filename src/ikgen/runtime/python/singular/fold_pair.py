@@ -11,11 +11,19 @@ import numpy as np
 
 from ikgen.runtime.python.arm.solved_arm import Arm
 from ikgen.runtime.python.arrays.array_tuples import some_of
-from ikgen.runtime.python.arrays.array_types import Array
+from ikgen.runtime.python.arrays.array_types import Array, Flags
 from ikgen.runtime.python.newton.arm_newton import linearized, moved_rows
 from ikgen.runtime.python.newton.refinement import clipped, damped, normal_inverse
 
-__all__ = ["Reduced", "approach", "correct", "generic", "still_directions"]
+__all__ = [
+    "Reduced",
+    "approach",
+    "correct",
+    "flow_and_others",
+    "generic",
+    "keeps_sense",
+    "still_directions",
+]
 
 _ALONG = 1e-4  # rad or m: the way over which slopes are compared for the second derivative
 _CLOSE = 1e-9  # rad or m: a step that is shorter is the last
@@ -107,13 +115,19 @@ def correct(arm: Arm, at: Reduced, T: Array) -> tuple[Reduced, Array]:
 
 
 def _oriented(out: Array, others: _Others) -> Array:
-    """Unit directions (k, m) in the sense that goes with the still ones': what the others do to the pose,
-    with these for the still ones, keeps orientation, however far `out` turned in a step."""
+    """Unit directions (k, m) in the sense that goes with the still ones', however far `out` turned in a
+    step."""
     if others.V.shape[1] != others.V.shape[2]:
         return out
-    turned = others.V + out[:, :, None] * others.still[:, None, :]
+    return np.where(keeps_sense(others.V, others.still, out)[:, None], out, -out)
+
+
+def keeps_sense(V: Array, still: Array, out: Array) -> Flags:
+    """Whether what others than the still directions (k, n) do to the pose, V (k, n, n), with `out` (k, n)
+    for the still ones, keeps orientation (k,)."""
+    turned = V + out[:, :, None] * still[:, None, :]
     with np.errstate(all="ignore"):
-        return np.where(np.linalg.det(turned)[:, None] < 0.0, -out, out)
+        return np.asarray(~(np.linalg.det(turned) < 0.0))
 
 
 def _others(arm: Arm, slope: Array, still: Array) -> _Others:
@@ -122,10 +136,16 @@ def _others(arm: Arm, slope: Array, still: Array) -> _Others:
 
 
 def _across(slope: Array, still: Array, damping: float) -> _Others:
-    flow = np.matmul(slope, still[:, :, None])[:, :, 0]
-    V = slope - flow[:, :, None] * still[:, None, :]
+    flow, V = flow_and_others(slope, still)
     normal = V.transpose(0, 2, 1) @ V + still[:, :, None] * still[:, None, :]
     return _Others(still, flow, V, damped(normal, damping))
+
+
+def flow_and_others(slope: Array, still: Array) -> tuple[Array, Array]:
+    """What still directions (k, n) do to the pose (k, m), and the directions across them (k, m, n), by its
+    derivatives (k, m, n)."""
+    flow = np.matmul(slope, still[:, :, None])[:, :, 0]
+    return flow, slope - flow[:, :, None] * still[:, None, :]
 
 
 class _Stepped(NamedTuple):

@@ -78,15 +78,20 @@ def trace(arm: Arm, q: Array, T: Array) -> Traced:
 def _traced(arm: Arm, q: Array, T: Array) -> Traced:
     """`trace` of rows that differ."""
     parts, ends, worst = followed(arm, q, T)
-    steps = np.bincount(parts.owner, minlength=len(q))
-    curve = steps >= LEAST
-    broken = curve & (worst >= arm.policy.arrived)
-    here = some_of(parts, broken[parts.owner])
-    both = joined(here, some_of(ends, broken[ends.owner]), _across(arm, here, T))
-    return Traced(curve, broken, *look(arm, both, T, steps))
+    steps, broken = _kinds(arm, parts, worst)
+    here, last = some_of(parts, broken[parts.owner]), some_of(ends, broken[ends.owner])
+    found = look(arm, joined(here, last, _crossing_parts(arm, here, T)), T, steps)
+    return Traced(steps >= LEAST, broken, *found)
 
 
-def _across(arm: Arm, parts: Parts, T: Array) -> Parts:
+def _kinds(arm: Arm, parts: Parts, worst: Array) -> tuple[Index, Flags]:
+    """How many samples (k,) there are of what was followed, with the most (k,) that is left there, and
+    which are curves of the solved geometry that the file's arm has not."""
+    steps = np.bincount(parts.owner, minlength=len(worst))
+    return steps, (steps >= LEAST) & (worst >= arm.policy.arrived)
+
+
+def _crossing_parts(arm: Arm, parts: Parts, T: Array) -> Parts:
     """The parts of broken curves that cross those of some parts."""
     owner, q = beside_crossings(arm, parts, T)
     none: Parts = some_of(parts, owner[:0])
@@ -98,11 +103,9 @@ def _across(arm: Arm, parts: Parts, T: Array) -> Parts:
     if not len(owner):
         return none
     more, ends, worst = _follow(arm, first, T[owner])
-    broken = np.bincount(more.owner, minlength=len(owner)) >= LEAST
-    broken &= worst >= arm.policy.arrived
-    more = joined(some_of(more, broken[more.owner]), some_of(ends, broken[ends.owner]))
-    out: Parts = more._replace(owner=owner[more.owner])
-    return out
+    _, broken = _kinds(arm, more, worst)
+    out: Parts = joined(*(some_of(some, broken[some.owner]) for some in (more, ends)))
+    return out._replace(owner=owner[out.owner])
 
 
 def followed(arm: Arm, q: Array, T: Array) -> tuple[Parts, Parts, Array]:
