@@ -1942,7 +1942,9 @@ def _kinds(arm: _Arm, parts: _Parts, worst: Array) -> tuple[_Index, _Flags]:
     """How many samples (k,) there are of what was followed, with the most (k,) that is left there, and
     which are curves of the solved geometry that the file's arm has not."""
     steps = np.bincount(parts.owner, minlength=len(worst))
-    return steps, (steps >= _LEAST) & (worst >= arm.policy.arrived)
+    curve = steps >= _LEAST
+    broken = curve & (worst >= arm.policy.arrived)
+    return steps, broken
 
 
 def _crossing_parts(arm: _Arm, parts: _Parts, T: Array) -> _Parts:

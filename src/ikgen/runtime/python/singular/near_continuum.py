@@ -88,7 +88,9 @@ def _kinds(arm: Arm, parts: Parts, worst: Array) -> tuple[Index, Flags]:
     """How many samples (k,) there are of what was followed, with the most (k,) that is left there, and
     which are curves of the solved geometry that the file's arm has not."""
     steps = np.bincount(parts.owner, minlength=len(worst))
-    return steps, (steps >= LEAST) & (worst >= arm.policy.arrived)
+    curve = steps >= LEAST
+    broken = curve & (worst >= arm.policy.arrived)
+    return steps, broken
 
 
 def _crossing_parts(arm: Arm, parts: Parts, T: Array) -> Parts:
