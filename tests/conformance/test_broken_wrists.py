@@ -61,10 +61,10 @@ CROSSING = np.array(  # where the wrist's broken continuum crosses the shoulder'
 
 
 def gaps(path: Path, configurations: Array, folder: Path) -> Array:
-    """How far (2, N) the nearest row is from each of some hundreds beside these, in both languages."""
+    """How far (2, N) the nearest row is from each of many beside these, in both languages."""
     arm, header = emitted_in_both(Request(path, name="wrist"), folder)
     random = np.random.default_rng(1)
-    q = configurations[np.arange(300) % len(configurations)]
+    q = configurations[np.arange(120) % len(configurations)]
     q = q + random.normal(size=q.shape) * 10.0 ** random.uniform(-7, -5, (len(q), 1))
     return gaps_in_both(arm, header, q)
 

@@ -140,7 +140,7 @@ def test_the_best_row_may_be_at_an_end_on_a_limit_or_just_before_a_fold(tmp_path
     both = in_both(replace(solver_module(dh), name="rounded_wrist"), tmp_path, "01")
     arm, rng = both.arm, np.random.default_rng(11)
     at_end = 0
-    for _ in range(40):
+    for _ in range(20):
         pose, seed = arm.forward(drawn(arm, rng)), drawn(arm, rng)
         _, numbers = both.run(1, seed, pose[None])
         row = numbers[: arm.DOF]
@@ -153,7 +153,7 @@ def test_the_best_row_may_be_at_an_end_on_a_limit_or_just_before_a_fold(tmp_path
         rows = rows.reshape(-1, arm.DOF)
         best = np.nanmin(np.linalg.norm(rows - seed, axis=1))
         assert cost(arm, 1, row, seed) < best + 1e-7
-    assert at_end > 5
+    assert at_end > 2
 
 
 def test_searches_from_a_row_give_it_back(both: Both) -> None:

@@ -66,9 +66,9 @@ def test_all_four_on_one_curve_are_found(tmp_path: Path) -> None:
     request = Request(path, name="curve", task="position-pitch", tool_axis="z")
     arm, header = emitted_in_both(request, tmp_path)
     random = np.random.default_rng(2)
-    q = random.uniform(-1.0, 1.0, (3000, 4))
-    sign = np.sign(random.uniform(-1.0, 1.0, (2, 3000)))
-    q[:, 2] = sign[0] * 10.0 ** random.uniform(-2.5, -2.0, 3000)
-    lean = sign[1] * 10.0 ** random.uniform(-4.5, -4.0, 3000)
+    q = random.uniform(-1.0, 1.0, (1200, 4))
+    sign = np.sign(random.uniform(-1.0, 1.0, (2, 1200)))
+    q[:, 2] = sign[0] * 10.0 ** random.uniform(-2.5, -2.0, 1200)
+    lean = sign[1] * 10.0 ** random.uniform(-4.5, -4.0, 1200)
     q[:, 3] = lean - 0.5 * np.pi - q[:, 1] - q[:, 2]
     assert gaps_in_both(arm, header, q, limits=False).max() < 1e-4

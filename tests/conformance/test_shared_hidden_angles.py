@@ -36,13 +36,13 @@ def test_all_are_found_where_the_wrist_is_not_rolled(tmp_path: Path) -> None:
     )
     random = np.random.default_rng(4)
     low, high = np.array(arm.LOWER), np.array(arm.UPPER)
-    q = random.uniform(low, high, (3000, 5))
-    q[:, 2] = random.choice([-np.pi / 2, np.pi / 2], 3000) + random.uniform(-0.01, 0.01, 3000)
-    q[:, 4] = random.choice([0.0, 1e-6], 3000)
+    q = random.uniform(low, high, (1000, 5))
+    q[:, 2] = random.choice([-np.pi / 2, np.pi / 2], 1000) + random.uniform(-0.01, 0.01, 1000)
+    q[:, 4] = random.choice([0.0, 1e-6], 1000)
     poses = arm.forward(q)
-    rows, (batch, _, _) = header.solve_many(poses), arm.solve_batch(poses[:3000])
+    rows, (batch, _, _) = header.solve_many(poses), arm.solve_batch(poses)
     for found in (rows.q, batch):
-        gap = np.abs(found - q[: len(found), None]).max(axis=2)
+        gap = np.abs(found - q[:, None]).max(axis=2)
         assert np.nanmin(np.where(np.isnan(gap), np.inf, gap), axis=1).max() < 1e-4
 
 
@@ -51,7 +51,7 @@ def test_a_root_that_is_one_of_a_fold_too_is_not_taken_for_one(tmp_path: Path) -
     """Where the arm lies in a plane so, two solutions that meet have the angle of two regular ones."""
     module = derive(Request(FIXTURES / "fanuc_crx10ia.urdf", name="crx")).module
     header = header_of(module, tmp_path)
-    q = np.random.default_rng(1).uniform(-3.0, 3.0, (2000, 6))
+    q = np.random.default_rng(1).uniform(-3.0, 3.0, (500, 6))
     q[:, 1:5] = (
         -0.78539816362406467,
         -0.78539816372125193,
