@@ -96,6 +96,19 @@ def test_a_wrist_above_the_shoulder_is_solved(arm: ModuleType) -> None:
         assert not found.singular[0]
 
 
+def test_singular_poses_are_answered(arm: ModuleType) -> None:
+    """Where several configurations of a continuum stand for it nothing but the pose tells them apart."""
+    rng = np.random.default_rng(5)
+    q = rng.uniform(arm.LOWER, arm.UPPER, (150, 7))
+    for some, joints in ((slice(50), [3, 5]), (slice(50, 100), [5]), (slice(100, 150), [1])):
+        q[some, joints] = 0.0
+    poses, angles = arm.forward(q), arm.arm_angle(q)
+    rows, count, _ = arm.solve_batch(poses, free=angles[:, None], seed=q)
+    assert (count > 0).all()
+    for pose, found, n in zip(poses, rows, count, strict=True):
+        assert np.abs(arm.forward(found[:n]) - pose).max() < 1e-8
+
+
 def test_an_arm_with_the_angle_named_is_like_one_with_a_joint_held(arm: ModuleType) -> None:
     assert arm.FREE_JOINTS == ("arm_angle",)
     assert "arm_angle" not in arm.JOINT_NAMES and arm.DOF == 7

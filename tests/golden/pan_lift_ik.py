@@ -1042,6 +1042,10 @@ class _Asked:
         closed = None if self.closed is None else _some_of(self.closed, index)
         return _Asked(self.T[index], near, self.held[index], closed)
 
+    def aim(self, arm: _Arm) -> Array:
+        """What rows are refined towards (n, ...)."""
+        return _aims(arm, self.T, self.held)
+
     def seed(self, k: int) -> Row | None:
         """Of one pose."""
         return None if self.near is None else tuple(self.near[k].tolist())
@@ -1479,8 +1483,8 @@ _meeting_rows_BESIDE = 0.1  # rad or m: farther apart closed forms have them all
 
 
 class _Starts(NamedTuple):
-    """Where Newton steps start: rows `q` (k, dof) for poses `T` (k, 4, 4), which rows are of the same pose,
-    `pose` (k,), which the closed form `marked` (k,) as of a continuum, and the `source` (k,) of each:
+    """Where Newton steps start: rows `q` (k, dof) towards aims `T` (k, ...), which rows are of the same
+    pose, `pose` (k,), which the closed form `marked` (k,) as of a continuum, and the `source` (k,) of each:
     given (-1), the closed form for the pose (0), or for one beside (1, 2, ...), on branch `lane` (k,)."""
 
     q: Array
@@ -1638,21 +1642,24 @@ def _fresh(arm: _Arm, q: Array, starts: _Starts, near: _Flags, stalled: _Flags) 
     return np.ones(len(q), dtype=bool)
 
 
-def _repeats(arm: _Arm, T: Array, row: Row, kept: Sequence[_Found]) -> bool:
-    """Whether nothing tells a singular row from one kept nearby."""
+def _repeats(arm: _Arm, aim: Array, row: Row, kept: Sequence[_Found]) -> bool:
+    """Whether nothing tells a singular row towards an aim from one kept nearby."""
     others = [other for other, singular in kept if singular]
     if not others:
         return False
     rows = np.broadcast_to(np.array(row), (len(others), len(row)))
-    return bool(_untold(arm, np.broadcast_to(T, (len(others), 4, 4)), rows, np.array(others)).any())
+    return bool(
+        _untold(arm, np.broadcast_to(aim, (len(others), *aim.shape)), rows, np.array(others)).any()
+    )
 
 
 def _untold(arm: _Arm, T: Array, a: Array, b: Array) -> _Flags:
-    """Which singular rows a (k, dof) for poses T (k, 4, 4) nothing tells from others nearby, b (k, dof)."""
+    """Which singular rows a (k, dof) towards aims T (k, ...) nothing tells from others nearby, b (k,
+    dof)."""
     gaps = _differences(arm, a, b)
     near = np.flatnonzero(np.abs(gaps).max(axis=1) < arm.policy.alike)
     middle, T = (a + 0.5 * gaps)[near], T[near]
-    off = np.abs(arm.task.error(_forward(arm.chain, middle), T)).max(axis=1)
+    off = np.abs(_linearized(arm, middle, T)[0]).max(axis=1)
     untold: _Flags = off < arm.policy.halfway
     some = np.flatnonzero(~untold & (off < arm.policy.arrived))
     if len(some):
@@ -1663,7 +1670,7 @@ def _untold(arm: _Arm, T: Array, a: Array, b: Array) -> _Flags:
 
 
 def _that_differ(arm: _Arm, T: Array, pose: _Index, q: Array, singular: _Flags) -> _Index:
-    """Which rows q (k, dof) of poses T[pose] (k, 4, 4) differ from all that are taken before them, in
+    """Which rows q (k, dof) towards aims T[pose] (k, ...) differ from all that are taken before them, in
     order."""
     left, taken = np.arange(len(q)), [np.zeros(0, dtype=np.intp)]
     while len(left):
@@ -1703,8 +1710,9 @@ def _rows_from(arm: _Arm, asked: _Asked, start: Array, turn: _Index) -> list[_Fo
         more = _of_lanes(arm, asked, closed, hidden, hidden)
         leads = _both(leads, _leads_of(arm, more, known))
     kept = _meeting(arm, asked, leads)
+    aim = asked.aim(arm)
     for i, k in np.argwhere(closed.valid & ~closed.rough).tolist():
-        _add_new(arm, asked.T[i], [(tuple(closed.q[i, k].tolist()), bool(marked[i, k]))], kept[i])
+        _add_new(arm, aim[i], [(tuple(closed.q[i, k].tolist()), bool(marked[i, k]))], kept[i])
     return list(zip(kept, free.tolist(), np.logical_or.reduce(marked | known, axis=1).tolist()))
 
 
@@ -1743,8 +1751,7 @@ def _given(arm: _Arm, asked: _Asked, start: Array, pose: _Index) -> _Starts:
 def _starts(
     arm: _Arm, asked: _Asked, q: Array, pose: _Index, marked: _Flags, source: _Index, lane: _Index
 ) -> _Starts:
-    aim = _aims(arm, asked.T, asked.held)[pose]
-    return _Starts(q, aim, pose, marked, source, lane)
+    return _Starts(q, asked.aim(arm)[pose], pose, marked, source, lane)
 
 
 def _meeting(arm: _Arm, asked: _Asked, leads: _Leads) -> list[list[_Found]]:
@@ -1754,15 +1761,15 @@ def _meeting(arm: _Arm, asked: _Asked, leads: _Leads) -> list[list[_Found]]:
     flat, continuum = arm.policy.singular_below, arm.policy.continuum_below
     pose, marked = leads.starts.pose[owner], leads.starts.marked[owner]
     flags = (marked & (sigma < continuum)) | (sigma < flat)
-    for k in _that_differ(arm, asked.T, pose, q, flags).tolist():
+    for k in _that_differ(arm, asked.aim(arm), pose, q, flags).tolist():
         out[pose[k]].append((tuple(q[k].tolist()), bool(flags[k])))
     return out
 
 
-def _add_new(arm: _Arm, T: Array, rows: list[_Found], kept: list[_Found]) -> None:
-    """Adds those of the rows that differ from all that are there."""
+def _add_new(arm: _Arm, aim: Array, rows: list[_Found], kept: list[_Found]) -> None:
+    """Adds those of the rows towards an aim (4 or 6, 4) that differ from all that are there."""
     for row, singular in rows:
-        if _is_new(arm, row, kept) and not (singular and _repeats(arm, T, row, kept)):
+        if _is_new(arm, row, kept) and not (singular and _repeats(arm, aim, row, kept)):
             kept.append((row, singular))
 
 
@@ -2357,7 +2364,7 @@ def _take_along(arm: _Arm, asked: _Asked, limits: bool, out: list[_Answer]) -> N
         some = [i for i, rows in enumerate(beyond) if step < len(rows)]
         q = np.array([beyond[i][step] for i in some])
         stands = [(k, row) for k, i in enumerate(some) for row, flag in out[i].rows if flag]
-        for k, row in zip(*_rows_along(arm, q, _aims(arm, asked.T[some], asked.held[some]), stands)):
+        for k, row in zip(*_rows_along(arm, q, asked.at(np.array(some)).aim(arm), stands)):
             _add_inside(arm, asked, some[k], [(tuple(row.tolist()), True)], limits, out)
     which = [i for i, rows in enumerate(beyond) for _ in rows if not out[i].stands]
     if which:
@@ -2380,12 +2387,13 @@ def _outside(arm: _Arm, answer: _Answer, near: Row | None, limits: bool) -> list
 def _add_inside(
     arm: _Arm, asked: _Asked, i: int, found: list[_Found], limits: bool, out: list[_Answer]
 ) -> None:
-    _add_new(arm, asked.T[i], _inside(arm, asked, i, found, limits), out[i].rows)
+    aim = asked.at(np.array([i])).aim(arm)
+    _add_new(arm, aim[0], _rows_inside(arm, aim, found, asked.seed(i), limits), out[i].rows)
 
 
 def _inside(arm: _Arm, asked: _Asked, i: int, found: list[_Found], limits: bool) -> list[_Found]:
     """What of the rows of a pose is inside the limits."""
-    aim = _aims(arm, asked.T[i : i + 1], asked.held[i : i + 1])
+    aim = asked.at(np.array([i])).aim(arm)
     return _rows_inside(arm, aim, found, asked.seed(i), limits)
 
 
@@ -2396,7 +2404,7 @@ def _led_to_or_along(arm: _Arm, asked: _Asked, rows: Array) -> list[list[_Found]
     some = np.flatnonzero([not one for one in led])
     if not len(some):
         return led
-    aim, broken = _aims(arm, asked.T, asked.held)[some], np.ones(len(some), dtype=bool)
+    aim, broken = asked.at(some).aim(arm), np.ones(len(some), dtype=bool)
     _, owner, q, sigma = arm.around(arm, rows[some], aim, broken)
     flags = (sigma < arm.policy.continuum_below).tolist()
     for k, row in zip(some[owner].tolist(), zip(map(tuple, q.tolist()), flags)):
@@ -2448,14 +2456,14 @@ def _goes_on(
     answer: _Answer,
 ) -> bool:
     """Adds rows to an answer, and says whether other values have to be tried."""
-    (kept, free, led), T, near = rows, asked.T[k], asked.seed(k)
+    (kept, free, led), near = rows, asked.seed(k)
+    aim = asked.at(np.array([k])).aim(arm)
     if not free and any(flag for _, flag in kept):
-        kept[:] = [one for one in kept if not (one[1] and _repeats(arm, T, one[0], seeded))]
-        _add_new(arm, T, seeded, kept)
+        kept[:] = [one for one in kept if not (one[1] and _repeats(arm, aim[0], one[0], seeded))]
+        _add_new(arm, aim[0], seeded, kept)
     answer.real, answer.led = answer.real or bool(kept), answer.led or led
     answer.loose = [one for one in kept if one[1]] or answer.loose
-    aim = _aims(arm, asked.T[k : k + 1], asked.held[k : k + 1])
-    _add_new(arm, T, _rows_inside(arm, aim, kept, near, limits), answer.rows)
+    _add_new(arm, aim[0], _rows_inside(arm, aim, kept, near, limits), answer.rows)
     if not answer.rows:
         answer.rows = _rows_inside(arm, aim, seeded, near, limits)
     led = answer.stands

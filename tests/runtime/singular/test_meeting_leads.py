@@ -88,6 +88,12 @@ def test_a_row_that_a_pose_beside_led_to_once_more_is_left_out() -> None:
     assert found.q[:, 0].tolist() == [0.5, 1.5, 2.5]
 
 
+def plane_arm(chain: Any, policy: Any) -> Any:
+    """Of a chain whose joints all move, with what `repeats` reads of its policy."""
+    moving = tuple(range(len(chain.revolute)))
+    return SimpleNamespace(policy=policy, chain=chain, task=Plane, moving=moving, angle=None)
+
+
 def test_singular_rows_are_one_where_the_pose_is_theirs_between_them_too() -> None:
     """An elbow a little bent to either side: halfway it is stretched, and a quarter of that off."""
     frames = np.tile(np.eye(4), (3, 1, 1))
@@ -100,14 +106,12 @@ def test_singular_rows_are_one_where_the_pose_is_theirs_between_them_too() -> No
 
     def told(halfway: float, singular: bool = True, alike: float = 0.3) -> bool:
         policy = SimpleNamespace(halfway=halfway, alike=alike, arrived=0.0)
-        arm: Any = SimpleNamespace(policy=policy, chain=chain, task=Plane)
+        arm = plane_arm(chain, policy)
         return repeats(arm, T, rows[0], [(rows[1], singular)])
 
     assert told(1.01 * off) and not told(0.99 * off)
     assert not told(1.0, singular=False) and not told(1.0, alike=0.1)
-    arm: Any = SimpleNamespace(
-        policy=SimpleNamespace(halfway=1.0, alike=1.0, arrived=0.0), chain=chain, task=Plane
-    )
+    arm = plane_arm(chain, SimpleNamespace(halfway=1.0, alike=1.0, arrived=0.0))
     assert not repeats(arm, T, rows[0], [])
 
 
@@ -128,7 +132,7 @@ def test_singular_rows_are_one_where_the_curve_between_them_has_the_pose(
 
     monkeypatch.setattr(meeting_rows, "samples_beside", samples_beside)
     policy = SimpleNamespace(halfway=2e-14, alike=0.3, arrived=1.0)
-    arm: Any = SimpleNamespace(policy=policy, chain=chain, task=Plane)
+    arm = plane_arm(chain, policy)
     T = forward(chain, np.array(rows[0]))
     assert repeats(arm, T, rows[0], [(rows[1], True)]) == told
     assert np.abs(given[0]).max() < 1e-15
@@ -141,7 +145,7 @@ def test_rows_of_many_poses_are_told_apart_as_one_after_the_other_is() -> None:
     motions = ((0, True, 1.0, 0.0), (1, True, 1.0, 0.0), (2, False, 1.0, 0.0))
     policy = SimpleNamespace(coincident=1e-6, alike=0.3, halfway=0.02, arrived=0.0)
     chain = chain_of(frames, motions, 3)
-    arm: Any = SimpleNamespace(policy=policy, chain=chain, task=Plane)
+    arm = plane_arm(chain, policy)
     rng = np.random.default_rng(2)
     q = np.array([0.1, 0.2, 40.0]) + rng.choice([0.0, 5e-7, 0.05, 0.15, 0.4], (300, 3))
     q[:, :2] += 2.0 * np.pi * rng.integers(-1, 2, (300, 2))

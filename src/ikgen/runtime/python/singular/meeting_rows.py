@@ -8,11 +8,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ikgen.runtime.python.arm.chain_kinematics import forward
 from ikgen.runtime.python.arm.solved_arm import Arm, Found
 from ikgen.runtime.python.arrays.array_tuples import joined, some_of
 from ikgen.runtime.python.arrays.array_types import Array, Flags, Index, Row
-from ikgen.runtime.python.newton.arm_newton import refined
+from ikgen.runtime.python.newton.arm_newton import linearized, refined
 from ikgen.runtime.python.newton.refinement import least_singular
 from ikgen.runtime.python.rows.row_links import differences
 from ikgen.runtime.python.rows.row_placement import distinct, same_rows
@@ -39,8 +38,8 @@ _BESIDE = 0.1  # rad or m: farther apart closed forms have them all
 
 
 class Starts(NamedTuple):
-    """Where Newton steps start: rows `q` (k, dof) for poses `T` (k, 4, 4), which rows are of the same pose,
-    `pose` (k,), which the closed form `marked` (k,) as of a continuum, and the `source` (k,) of each:
+    """Where Newton steps start: rows `q` (k, dof) towards aims `T` (k, ...), which rows are of the same
+    pose, `pose` (k,), which the closed form `marked` (k,) as of a continuum, and the `source` (k,) of each:
     given (-1), the closed form for the pose (0), or for one beside (1, 2, ...), on branch `lane` (k,)."""
 
     q: Array
@@ -222,22 +221,24 @@ def _fresh(arm: Arm, q: Array, starts: Starts, near: Flags, stalled: Flags) -> F
     return fresh
 
 
-def repeats(arm: Arm, T: Array, row: Row, kept: Sequence[Found]) -> bool:
-    """Whether nothing tells a singular row from one kept nearby."""
+def repeats(arm: Arm, aim: Array, row: Row, kept: Sequence[Found]) -> bool:
+    """Whether nothing tells a singular row towards an aim from one kept nearby."""
     others = [other for other, singular in kept if singular]
     if not others:
         return False
     rows = np.broadcast_to(np.array(row), (len(others), len(row)))
-    return bool(_untold(arm, np.broadcast_to(T, (len(others), 4, 4)), rows, np.array(others)).any())
+    return bool(
+        _untold(arm, np.broadcast_to(aim, (len(others), *aim.shape)), rows, np.array(others)).any()
+    )
 
 
 def _untold(arm: Arm, T: Array, a: Array, b: Array) -> Flags:
-    """Which singular rows a (k, dof) for poses T (k, 4, 4) nothing tells from others nearby, b (k, dof):
+    """Which singular rows a (k, dof) towards aims T (k, ...) nothing tells from others nearby, b (k, dof):
     the pose is theirs between them too, on the straight way or on a curve beside that."""
     gaps = differences(arm, a, b)
     near = np.flatnonzero(np.abs(gaps).max(axis=1) < arm.policy.alike)
     middle, T = (a + 0.5 * gaps)[near], T[near]
-    off = np.abs(arm.task.error(forward(arm.chain, middle), T)).max(axis=1)
+    off = np.abs(linearized(arm, middle, T)[0]).max(axis=1)
     untold: Flags = off < arm.policy.halfway
     some = np.flatnonzero(~untold & (off < arm.policy.arrived))
     if len(some):
@@ -248,7 +249,7 @@ def _untold(arm: Arm, T: Array, a: Array, b: Array) -> Flags:
 
 
 def that_differ(arm: Arm, T: Array, pose: Index, q: Array, singular: Flags) -> Index:
-    """Which rows q (k, dof) of poses T[pose] (k, 4, 4) differ from all that are taken before them, in
+    """Which rows q (k, dof) towards aims T[pose] (k, ...) differ from all that are taken before them, in
     order: those of a pose that the first of them is not, and of these again."""
     left, taken = np.arange(len(q)), [np.zeros(0, dtype=np.intp)]
     while len(left):

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ikgen.runtime.python.arm.held_parameters import aims
 from ikgen.runtime.python.arm.solved_arm import Arm, Found
 from ikgen.runtime.python.arrays.array_tuples import some_of
 from ikgen.runtime.python.arrays.array_types import Array, Index, Row
@@ -29,6 +30,10 @@ class Asked:
         near = None if self.near is None else self.near[index]
         closed = None if self.closed is None else some_of(self.closed, index)
         return Asked(self.T[index], near, self.held[index], closed)
+
+    def aim(self, arm: Arm) -> Array:
+        """What rows are refined towards (n, ...)."""
+        return aims(arm, self.T, self.held)
 
     def seed(self, k: int) -> Row | None:
         """Of one pose."""

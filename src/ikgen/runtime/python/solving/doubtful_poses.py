@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from ikgen.runtime.python.arm.held_parameters import aims
 from ikgen.runtime.python.arm.solved_arm import Arm, Found
 from ikgen.runtime.python.arrays.array_types import Array
 from ikgen.runtime.python.rows.row_placement import place_rows
@@ -61,14 +60,14 @@ def _goes_on(
     answer: Answer,
 ) -> bool:
     """Adds rows to an answer, and says whether other values have to be tried."""
-    (kept, free, led), T, near = rows, asked.T[k], asked.seed(k)
+    (kept, free, led), near = rows, asked.seed(k)
+    aim = asked.at(np.array([k])).aim(arm)
     if not free and any(flag for _, flag in kept):
-        kept[:] = [one for one in kept if not (one[1] and repeats(arm, T, one[0], seeded))]
-        add_new(arm, T, seeded, kept)
+        kept[:] = [one for one in kept if not (one[1] and repeats(arm, aim[0], one[0], seeded))]
+        add_new(arm, aim[0], seeded, kept)
     answer.real, answer.led = answer.real or bool(kept), answer.led or led
     answer.loose = [one for one in kept if one[1]] or answer.loose
-    aim = aims(arm, asked.T[k : k + 1], asked.held[k : k + 1])
-    add_new(arm, T, rows_inside(arm, aim, kept, near, limits), answer.rows)
+    add_new(arm, aim[0], rows_inside(arm, aim, kept, near, limits), answer.rows)
     if not answer.rows:
         answer.rows = rows_inside(arm, aim, seeded, near, limits)
     led = led if arm.rounded else answer.stands

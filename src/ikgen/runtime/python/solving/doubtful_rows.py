@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from ikgen.runtime.python.arm.held_parameters import aims
 from ikgen.runtime.python.arm.solved_arm import Arm, Found
 from ikgen.runtime.python.arrays.array_tuples import joined, some_of
 from ikgen.runtime.python.arrays.array_types import Array, Flags, Index
@@ -57,8 +56,9 @@ def rows_from(arm: Arm, asked: Asked, start: Array, turn: Index) -> list[FoundRo
     kept = _meeting(arm, asked, leads)
     if first and arm.rounded:
         _add_surfaces(arm, asked, leads, kept)
+    aim = asked.aim(arm)
     for i, k in np.argwhere(closed.valid & ~closed.rough).tolist():
-        add_new(arm, asked.T[i], [(tuple(closed.q[i, k].tolist()), bool(marked[i, k]))], kept[i])
+        add_new(arm, aim[i], [(tuple(closed.q[i, k].tolist()), bool(marked[i, k]))], kept[i])
     return list(zip(kept, free.tolist(), np.logical_or.reduce(marked | known, axis=1).tolist()))
 
 
@@ -85,8 +85,8 @@ def unplaced_rows(arm: Arm, T: Array, held: Array) -> list[list[Found]]:
 def _add_surfaces(arm: Arm, asked: Asked, leads: Leads, kept: list[list[Found]]) -> None:
     """Adds the solutions on surfaces of the solved geometry that starts lead to."""
     more = leads_of(arm, on_surfaces(arm, leads), np.zeros((len(kept), 1), dtype=bool))
-    for T, rows, found in zip(asked.T, kept, _meeting(arm, asked, more)):
-        add_new(arm, T, found, rows)
+    for aim, rows, found in zip(asked.aim(arm), kept, _meeting(arm, asked, more)):
+        add_new(arm, aim, found, rows)
 
 
 def _without_rows(arm: Arm, free: Flags, leads: Leads) -> Flags:
@@ -125,8 +125,7 @@ def _given(arm: Arm, asked: Asked, start: Array, pose: Index) -> Starts:
 def _starts(
     arm: Arm, asked: Asked, q: Array, pose: Index, marked: Flags, source: Index, lane: Index
 ) -> Starts:
-    aim = aims(arm, asked.T, asked.held)[pose]
-    return Starts(q, aim, pose, marked, source, lane)
+    return Starts(q, asked.aim(arm)[pose], pose, marked, source, lane)
 
 
 def _meeting(arm: Arm, asked: Asked, leads: Leads) -> list[list[Found]]:
@@ -136,13 +135,13 @@ def _meeting(arm: Arm, asked: Asked, leads: Leads) -> list[list[Found]]:
     flat, continuum = arm.policy.singular_below, arm.policy.continuum_below
     pose, marked = leads.starts.pose[owner], leads.starts.marked[owner]
     flags = (marked & (sigma < continuum)) | (sigma < flat)
-    for k in that_differ(arm, asked.T, pose, q, flags).tolist():
+    for k in that_differ(arm, asked.aim(arm), pose, q, flags).tolist():
         out[pose[k]].append((tuple(q[k].tolist()), bool(flags[k])))
     return out
 
 
-def add_new(arm: Arm, T: Array, rows: list[Found], kept: list[Found]) -> None:
-    """Adds those of the rows that differ from all that are there."""
+def add_new(arm: Arm, aim: Array, rows: list[Found], kept: list[Found]) -> None:
+    """Adds those of the rows towards an aim (4 or 6, 4) that differ from all that are there."""
     for row, singular in rows:
-        if is_new(arm, row, kept) and not (singular and repeats(arm, T, row, kept)):
+        if is_new(arm, row, kept) and not (singular and repeats(arm, aim, row, kept)):
             kept.append((row, singular))
