@@ -65,6 +65,33 @@ def test_another_robot_or_task_is_not_replaced(
     assert run(["from-urdf", "elbow.urdf", "--task", "position", *named]) == 0
 
 
+def test_joints_that_move_otherwise_make_another_arm(
+    here: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    plain = ["from-urdf", "elbow.urdf", "--no-verify", "-q", "-o", "out"]
+    lock, couple = ["--lock", "elbow=0.1"], ["--couple", "elbow=shoulder*2"]
+    (here / "own.yaml").write_text(
+        "kinematics:\n"
+        "  waist_link: {x: 0, y: 0, z: 0.201, roll: 0, pitch: 0, yaw: 0}\n"
+        "  shoulder_link: {x: 0, y: 0, z: 0.1, roll: 0, pitch: 0, yaw: 0}\n"
+        "  elbow_link: {x: 0, y: 0, z: 0.35, roll: 0, pitch: 0, yaw: 0}\n"
+    )
+    own, before = ["--calibration", "own.yaml"], "with no joint locked"
+    assert run(plain) == 0
+    for options, said in (
+        (lock, "with elbow=0.1 locked"),
+        (couple, "with elbow=shoulder*2 coupled"),
+        (own, "calibrated by own.yaml"),
+        ([], ""),
+    ):
+        bytes_before = (here / "out/elbow_ik.py").read_bytes()
+        assert run([*plain, *options]) == 2
+        assert f"out/elbow_ik.json has outputs of the arm {before}" in capsys.readouterr().err
+        assert (here / "out/elbow_ik.py").read_bytes() == bytes_before
+        assert run([*plain, *options, "--force"]) == run([*plain, *options]) == 0
+        before = said
+
+
 def test_arguments_that_make_another_robot(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
     text = (here / "elbow.urdf").read_text().replace('"0.3 0 0"', '"$(arg reach) 0 0"')
     declared = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="elbow">'

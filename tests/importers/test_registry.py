@@ -29,9 +29,10 @@ def test_format_is_told_by_the_suffix(name, kind):
     assert importer_of(Path(name)).kind == kind
 
 
-def test_unknown_suffix_lists_the_known_ones():
+def test_unknown_suffix_lists_the_known_ones(tmp_path):
+    (tmp_path / "robot.sdf").touch()
     with pytest.raises(UsageError, match=r"suffix '\.sdf'") as caught:
-        importer_of(Path("robot.sdf"))
+        importer_of(tmp_path / "robot.sdf")
     assert ".urdf" in caught.value.hint and ".xacro" in caught.value.hint
 
 
@@ -45,6 +46,8 @@ def test_importing_the_registry_loads_no_reader():
 def test_missing_file_and_directory(tmp_path):
     with pytest.raises(BadDescriptionError, match="no such file"):
         load_tree(tmp_path / "absent.urdf")
+    with pytest.raises(BadDescriptionError, match="no such file"):
+        load_tree(tmp_path / "absent")
     (tmp_path / "folder.urdf").mkdir()
     with pytest.raises(BadDescriptionError, match="is a directory"):
         load_tree(tmp_path / "folder.urdf")

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import shlex
+from collections.abc import Iterable
 
 from ikgen.chains.arms import ChainCandidate, candidate_chains, conventional_base
 from ikgen.errors import UsageError
 from ikgen.importers.urdf.topology import TreeIndex
 from ikgen.model.counted import counted
-from ikgen.model.joint_tree import JointTree
+from ikgen.model.joint_tree import Joint, JointTree, JointType
 
 __all__ = ["choose_ends", "not_below"]
 
@@ -39,15 +40,24 @@ def choose_ends(
 
 def _no_arm(tree: JointTree, index: TreeIndex, base: str | None) -> UsageError:
     root = tree.root_link if base is None else base
-    below = (joint for link in index.subtree(root) for joint in index.below[link])
+    below = [joint for link in index.subtree(root) for joint in index.below[link]]
     moving = [joint.name for joint in below if joint.type.moves_on_one_axis]
     where = f"below '{base}'" if base is not None else f"in robot '{tree.name}'"
     if not moving:
-        return UsageError(f"no joint moves {where}", hint="choose other links by --base and --tip")
+        hint = "choose other links by --base and --tip"
+        return UsageError(f"no joint moves {where}{_unread(below)}", hint=hint)
     return UsageError(
         f"no arm {where}: only fingers, wheels or rotors move there ({moving[0]}, ...)",
         hint="choose the links of a chain by --base and --tip",
     )
+
+
+def _unread(below: Iterable[Joint]) -> str:
+    """In words, the joints that move on more axes than one; "" for none."""
+    free = [one for one in below if one.type in (JointType.PLANAR, JointType.FLOATING)]
+    if not free:
+        return ""
+    return f" on one axis: '{free[0].name}' is {free[0].type.value}, which no chain can be solved through"
 
 
 def _options(chain: ChainCandidate) -> str:

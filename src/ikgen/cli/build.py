@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ikgen.cli.completion import RobotFile
+from ikgen.cli.completion import GivenPath, RobotFile
 from ikgen.cli.console import Console
 from ikgen.cli.error_output import as_object, say
 from ikgen.cli.options import console_options, executor_option, trust_option
@@ -28,7 +28,7 @@ __all__ = ["build"]
 
 
 @click.command()
-@click.argument("config", type=click.Path(path_type=Path), metavar="[CONFIG|DIR]", required=False)
+@click.argument("config", type=GivenPath(), metavar="[CONFIG|DIR]", required=False)
 @click.option(
     "--check", is_flag=True, help="Only say what is stale and why; exit code 1 if anything is."
 )
@@ -42,7 +42,7 @@ __all__ = ["build"]
 @click.option(
     "--depfile",
     metavar="FILE",
-    type=click.Path(path_type=Path),
+    type=GivenPath(),
     help="Also write which files the outputs depend on, as a Makefile rule.",
 )
 @click.option(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -14,7 +15,7 @@ from ikgen.generation.emitters import emitter_names
 from ikgen.importers.named_robots import DATA, robot_names
 from ikgen.tasks import task_names
 
-__all__ = ["Emits", "Joints", "Links", "RobotFile", "Tasks", "completion"]
+__all__ = ["Emits", "GivenPath", "Joints", "Links", "RobotFile", "Tasks", "completion"]
 
 _SHELLS = ("bash", "zsh", "fish")
 _VARIABLE = "_IKGEN_COMPLETE"
@@ -85,11 +86,26 @@ class Joints(_Names):
         return [f"{joint.name}{self.end}" for joint in joints if joint.type.moves_on_one_axis]
 
 
-class RobotFile(click.Path):
-    """A file, or a robot by its name in a package."""
+class GivenPath(click.Path):
+    """A file or folder with a name: "" is what a variable gives that is not set."""
 
     def __init__(self) -> None:
         super().__init__(path_type=Path)
+
+    def convert(
+        self,
+        value: str | os.PathLike[str],
+        param: click.Parameter | None,
+        ctx: click.Context | None,
+    ) -> Any:
+        """The path."""
+        if value == "":
+            self.fail("the path is empty", param, ctx)
+        return super().convert(value, param, ctx)
+
+
+class RobotFile(GivenPath):
+    """A file, or a robot by its name in a package."""
 
     def shell_complete(
         self, ctx: click.Context, param: click.Parameter, incomplete: str

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ikgen.cli.completion import RobotFile
+from ikgen.cli.completion import GivenPath, RobotFile
 from ikgen.cli.console import Console
 from ikgen.cli.options import (
     chain_options,
@@ -32,14 +32,14 @@ _output = click.option(
     "--output",
     "out",
     metavar="DIR",
-    type=click.Path(path_type=Path),
+    type=GivenPath(),
     default=Path(),
     help="Where the outputs go (default: here).",
 )
 _depfile = click.option(
     "--depfile",
     metavar="FILE",
-    type=click.Path(path_type=Path),
+    type=GivenPath(),
     help="Also write which files the outputs depend on, as a Makefile rule.",
 )
 _depfile_target = click.option(
@@ -79,7 +79,7 @@ def from_urdf(robot: Path, **options: Any) -> int:
 
 
 @click.command("from-dh")
-@click.argument("table", type=click.Path(path_type=Path))
+@click.argument("table", type=GivenPath())
 @table_options
 @emit_option
 @package_options

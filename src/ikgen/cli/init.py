@@ -9,7 +9,7 @@ from typing import Any
 
 import click
 
-from ikgen.cli.completion import RobotFile
+from ikgen.cli.completion import GivenPath, RobotFile
 from ikgen.cli.console import Console
 from ikgen.cli.options import (
     console_options,
@@ -33,7 +33,7 @@ __all__ = ["init"]
     "--output",
     "out",
     metavar="FILE",
-    type=click.Path(path_type=Path),
+    type=GivenPath(),
     default=Path("ikgen.toml"),
     help="The config to write (default: ikgen.toml here).",
 )

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable, Sequence
-from pathlib import Path
 from typing import Any, TypeVar
 
 import click
 
-from ikgen.cli.completion import Emits, Joints, Links, Tasks
+from ikgen.cli.completion import Emits, GivenPath, Joints, Links, Tasks
 from ikgen.generation.emitters import EMITTERS
 from ikgen.tasks import AXES, TASKS
 
@@ -30,7 +29,7 @@ __all__ = [
 ]
 
 F = TypeVar("F", bound=Callable[..., Any])
-_FOLDER = click.Path(path_type=Path)
+_FOLDER = GivenPath()
 
 
 _XACRO_OPTIONS = (
@@ -88,7 +87,7 @@ _SOLVING_OPTIONS = (
     click.option(
         "--calibration",
         metavar="FILE",
-        type=click.Path(path_type=Path),
+        type=GivenPath(),
         help="The one arm's own kinematics: a calibration.yaml, or offsets of its DH rows (.toml).",
     ),
     click.option(

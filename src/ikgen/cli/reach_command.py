@@ -11,7 +11,7 @@ from typing import Any
 
 import click
 
-from ikgen.cli.completion import RobotFile
+from ikgen.cli.completion import GivenPath, RobotFile
 from ikgen.cli.console import Console
 from ikgen.cli.options import (
     chain_options,
@@ -56,7 +56,7 @@ __all__ = ["reach"]
     "--output",
     "out",
     metavar="DIR|FILE",
-    type=click.Path(path_type=Path),
+    type=GivenPath(),
     default=Path(),
     help="Where the map goes (default: here); a file ends in .npz or .zarr.",
 )

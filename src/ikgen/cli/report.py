@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from ikgen.cli.completion import RobotFile
+from ikgen.cli.completion import GivenPath, RobotFile
 from ikgen.cli.console import Console
 from ikgen.cli.error_output import ResultError
 from ikgen.cli.options import chain_options, console_options, force_option, sampling_options
@@ -26,7 +26,7 @@ __all__ = ["report"]
     "--output",
     "out",
     metavar="DIR",
-    type=click.Path(path_type=Path),
+    type=GivenPath(),
     default=Path(),
     help="Where the report goes (default: here).",
 )

@@ -18,7 +18,7 @@ def derivation_trace(graph: SolutionGraph) -> str:
     parts = ["behaviour tree:"]
     for number in sorted({t.round for t in graph.ticks}):
         parts += [f"round {number}", table(_round(graph, number))]
-    parts.append("choices:")
+    parts += ["choices:"] if graph.steps else []
     for step in graph.steps:
         chosen = step.candidate
         parts.append(f"  {chosen.unknown.text}: {chosen.leaf}, {chosen.form.name}{_judged(chosen)}")

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from ikgen.cli.annotations import annotate, annotate_error
+from ikgen.cli.completion import GivenPath
 from ikgen.cli.console import Console
 from ikgen.cli.options import console_options, executor_options, sampling_options, trust_option
 from ikgen.cli.recheck_json import as_dict
@@ -23,17 +24,17 @@ __all__ = ["verify"]
 
 
 @click.command()
-@click.argument("target", type=click.Path(path_type=Path), metavar="[CONFIG|DIR]", required=False)
+@click.argument("target", type=GivenPath(), metavar="[CONFIG|DIR]", required=False)
 @click.option(
     "--robot",
     metavar="FILE",
-    type=click.Path(path_type=Path),
+    type=GivenPath(),
     help="Check against this description instead of the recorded one.",
 )
 @click.option(
     "--junit-xml",
     metavar="FILE",
-    type=click.Path(path_type=Path),
+    type=GivenPath(),
     help="Also write the results as JUnit XML.",
 )
 @sampling_options

@@ -9,7 +9,7 @@ from typing import Any
 
 import click
 
-from ikgen.cli.completion import RobotFile
+from ikgen.cli.completion import GivenPath, RobotFile
 from ikgen.cli.console import Console
 from ikgen.cli.options import chain_options
 from ikgen.cli.request_options import make_request
@@ -33,7 +33,7 @@ __all__ = ["view"]
     "--map",
     "map_file",
     metavar="FILE",
-    type=click.Path(path_type=Path),
+    type=GivenPath(),
     help="A map that ikgen reach made of the arm, .npz or .zarr, to show.",
 )
 @click.option("--no-browser", is_flag=True, help="Serve the page, open none.")

@@ -74,6 +74,19 @@ class SolverModule:
         return replace(self, dh=replace(self.dh, transmission=None))
 
     @property
+    def beyond(self) -> dict[str, str]:
+        """What a solver of this arm needs beside the Program and Newton steps on its chain, by name, in
+        words: values of `motors` that move several joints (`dh.transmission`), `blanks` in place of numbers
+        (`dh.symbols`), and rows with the `arm-angle` that is asked for (`dh.arm_angle`)."""
+        dh = self.dh
+        needed = {
+            "motors": ("motors that move several joints", dh.transmission is not None),
+            "blanks": ("constants to be filled in", bool(dh.symbols)),
+            "arm-angle": ("the arm angle", dh.arm_angle),
+        }
+        return {name: words for name, (words, needs) in needed.items() if needs}
+
+    @property
     def held(self) -> tuple[str, ...]:
         """Names of what is held: joints, base to tip, then the arm angle."""
         return self.dh.held

@@ -46,9 +46,9 @@ class Earlier:
                 raise self._refused(record.path, f"has outputs of {difference}", reading)
 
     def _refused(self, path: Path, what: str, reading: Reading) -> UsageError:
-        tip = identifier(reading.dh.tip_link)
-        other = self.name if self.name.endswith(tip) else f"{self.name}_{tip}"
-        new = f"--name {other}" if other != self.name else "--name NAME"
+        other = f"{self.name}_{identifier(reading.dh.tip_link)}"
+        by_tip = "another chain, " in what and not self.name.endswith(other[len(self.name) :])
+        new = f"--name {other}" if by_tip else "--name NAME"
         return UsageError(
             f"{path} {what}",
             hint=f"write beside it with {new}, elsewhere with -o DIR, or replace it with --force",
@@ -103,6 +103,23 @@ def _difference(record: Record, request: Request, reading: Reading, task: str | 
             return f"another robot, {was.robot} with {given or 'no arguments'}"
     if (was.base, was.tip) != (dh.base_link, dh.tip_link):
         return f"another chain, {was.base} -> {was.tip}"
+    changed = _changed(was, request)
+    if changed:
+        return f"the arm {changed}"
     if task is not None and was.task != task and record.asked.task != request.task:
         return f"another task, {was.task}"
+    return ""
+
+
+def _changed(was: Request, request: Request) -> str:
+    """What another request made of the same chain: joints that move otherwise, or a calibration."""
+    if dict(was.lock) != dict(request.lock):
+        locked = " ".join(f"{name}={value!r}" for name, value in was.lock.items())
+        return f"with {locked} locked" if locked else "with no joint locked"
+    if dict(was.couple) != dict(request.couple):
+        coupled = " ".join(f"{name}={text}" for name, text in was.couple.items())
+        return f"with {coupled} coupled" if coupled else "with no joint coupled by --couple"
+    files = [one.calibration and one.calibration.resolve() for one in (was, request)]
+    if files[0] != files[1]:
+        return f"calibrated by {was.calibration}" if was.calibration else "without a calibration"
     return ""

@@ -9,7 +9,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ikgen.errors import UnknownNameError
+from ikgen.errors import UnknownNameError, UsageError
 from ikgen.plugins import PlugIn, find_plug_in, plug_ins
 
 if TYPE_CHECKING:
@@ -30,7 +30,8 @@ class Emitter:
     `runner_target` "module:function" takes the `EmittedArm` and the folder of the finished files
     and gives a verification runner (none: the output is not run), which of one that is `compiled`
     starts a compiler: such an output comes first, others meanwhile. `plug_in` is set for an emitter of
-    another package, which its failures then name."""
+    another package, which its failures then name; `beyond` says which of `SolverModule.beyond` that one
+    writes: arms that need others are refused."""
 
     name: str
     words: str
@@ -39,11 +40,20 @@ class Emitter:
     tells_verification: bool = False
     plug_in: PlugIn | None = None
     compiled: bool = False
+    beyond: tuple[str, ...] = ()
 
     def emit(
         self, derivation: Derivation, reports: Mapping[str, VerificationReport] | None = None
     ) -> dict[str, str]:
-        """File name (relative) -> text."""
+        """File name (relative) -> text. Raises `UsageError` for an arm that needs more than another
+        package's emitter says that it writes."""
+        needed = derivation.module.beyond.items()
+        left = [words for name, words in needed if name not in self.beyond]
+        if self.plug_in is not None and left:
+            raise UsageError(
+                f"the {self.plug_in.words} does not write {' and '.join(left)}, which this arm needs",
+                hint="emit python or cpp, or ask its package for it",
+            )
         more = (reports or {},) if self.tells_verification else ()
         with self._blamed():
             texts: dict[str, str] = _load(self.target)(derivation, *more)

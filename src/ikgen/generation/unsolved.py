@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections import Counter
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from ikgen.emit.derivation import Unsolved
@@ -34,11 +35,14 @@ def unsolved_error(found: Unsolved, request: Request) -> UnsolvedChainError:
         *leftover_text(graph),
     )
     cause, advice = _same_line(dh) or _counted(dh, task)
+    hint = f"{request.command()} {advice}"
+    if request.task is not None and dh.dof - len(dh.free) > task.freedoms:
+        hint = f"{replace(request, task=None, tool_axis=None).command()}\nor {hint}"
     return UnsolvedChainError(
         f"no closed form found for the task '{task.name}': {cause}",
         unsolved=found,
         details=details,
-        hint=f"{request.command()} {advice}",
+        hint=hint,
     )
 
 

@@ -15,7 +15,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Protocol, cast
 
-from ikgen.errors import PlugInError, UsageError
+from ikgen.errors import BadDescriptionError, PlugInError, UsageError
 from ikgen.importers.named_robots import find_robot, is_named
 from ikgen.plugins import PlugIn, plug_ins
 
@@ -116,6 +116,8 @@ def importer_of(path: Path) -> Importer:
         raise UsageError(
             f"{path} is a folder", hint=f"name the robot's file in it: {path}/ROBOT.urdf"
         )
+    if not path.exists():
+        raise BadDescriptionError("no such file", file=str(path), hint="check the path")
     known = ", ".join(suffix for row in (*IMPORTERS, *others) for suffix in row.suffixes)
     raise UsageError(
         f"{path}: cannot tell the format of a robot description by the suffix '{path.suffix}'",

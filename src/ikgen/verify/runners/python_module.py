@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib.util
 import itertools
 import sys
@@ -43,7 +44,8 @@ def _load(path: Path) -> ModuleType:
     sys.modules[name] = module  # dataclasses look their module up here
     writes, sys.dont_write_bytecode = sys.dont_write_bytecode, True
     try:
-        spec.loader.exec_module(module)
+        with contextlib.redirect_stdout(sys.stderr):  # stdout may be for JSON
+            spec.loader.exec_module(module)
     except Exception as error:
         what = f"{type(error).__name__}: {error}"
         hint = "generate it anew, with ikgen of this version"
