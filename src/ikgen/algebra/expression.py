@@ -23,8 +23,8 @@ ZERO_TOLERANCE = 1e-10
 
 @dataclass(frozen=True, slots=True)
 class Atom:
-    """What an input node stands for: `kind` is one of pose, cos, sin, dist, sigma, seed_cos, seed_sin,
-    seed_dist, root; `key` says which one (an angle key, a joint index, a pose entry's name)."""
+    """What an input node stands for: `kind` is one of pose, cos, sin, prismatic, input, coefficient, sigma;
+    `key` says which one (an angle combination, a joint's index, a pose entry's name)."""
 
     kind: str
     key: tuple[int, ...] | str

@@ -76,32 +76,32 @@ def run(v: JointVariables, first: int, last: int) -> Rigid:
     Linear in the cosines and sines of the cumulative angles.
     """
     g = v.graph
-    key, shift = v.row_angle(first)
+    combination, shift = v.row_angle(first)
     x, y, z = g.zero, g.zero, v.row_distance(first)
     for i in range(first + 1, last + 1):
-        c, s = v.rotated(key, shift)
+        c, s = v.rotated(combination, shift)
         a = v.length(v.dh.rows[i].a)
         x, y = g.add(x, g.mul(a, c)), g.add(y, g.mul(a, s))
         z = g.add(z, v.row_distance(i))
         step, more = v.row_angle(i)
-        key = tuple(p + q for p, q in zip(key, step, strict=True))
+        combination = tuple(p + q for p, q in zip(combination, step, strict=True))
         shift += more
-    c, s = v.rotated(key, shift)
+    c, s = v.rotated(combination, shift)
     return Rigid(_rotation_z(g, c, s), (x, y, z))
 
 
 def run_inverse(v: JointVariables, first: int, last: int) -> Rigid:
     """The inverse of `run`, in the trailing cumulative angles."""
     g = v.graph
-    key, shift = v.row_angle(last)
+    combination, shift = v.row_angle(last)
     x, y, z = g.zero, g.zero, v.row_distance(last)
     for i in range(last, first, -1):
-        c, s = v.rotated(key, shift)
+        c, s = v.rotated(combination, shift)
         a = v.length(v.dh.rows[i].a)
         x, y = g.add(x, g.mul(a, c)), g.sub(y, g.mul(a, s))
         z = g.add(z, v.row_distance(i - 1))
         step, more = v.row_angle(i - 1)
-        key = tuple(p + q for p, q in zip(key, step, strict=True))
+        combination = tuple(p + q for p, q in zip(combination, step, strict=True))
         shift += more
-    c, s = v.rotated(key, shift)
+    c, s = v.rotated(combination, shift)
     return Rigid(_rotation_z(g, c, g.neg(s)), (g.neg(x), g.neg(y), g.neg(z)))

@@ -13,13 +13,13 @@ SOLVE = r"""
 #include "elimination/general_6r_eigenvalues.hpp"
 using namespace ikgen_runtime;
 template <std::size_t N> bool one() {
-  g6::Mat<N, N> a{};
-  std::array<g6::Complex, N> found{};
+  elimination::Mat<N, N> a{};
+  std::array<elimination::Complex, N> found{};
   for (std::size_t i = 0; i < N; ++i)
     for (std::size_t j = 0; j < N; ++j)
       if (std::scanf("%lf", &a(i, j)) != 1) return false;
-  if (!g6::eigenvalues(a, found)) return false;
-  for (const g6::Complex& x : found) std::printf("%.17g %.17g ", x.real(), x.imag());
+  if (!elimination::eigenvalues(a, found)) return false;
+  for (const elimination::Complex& x : found) std::printf("%.17g %.17g ", x.real(), x.imag());
   std::printf("\n");
   return true;
 }

@@ -37,7 +37,7 @@ struct OnlyEigenproblems {
 };
 int main() {
   static double F[7][12], T[12];
-  static g6::Solutions all;
+  static elimination::Solutions all;
   int n = 0, method = 0;
   read(&method, 1, "%d");
   read(Plan::kResultants[0].data(), 2, "%d");
@@ -52,7 +52,7 @@ int main() {
     else
       general_6r<OnlyEigenproblems>(F, T, all);
     for (int k = 0; k < all.count; ++k) {
-      const g6::Solution& row = all.rows[static_cast<std::size_t>(k)];
+      const elimination::Solution& row = all.rows[static_cast<std::size_t>(k)];
       for (const double x : row.q) std::printf("%.17g ", x);
       for (const double x : row.c) std::printf("%.17g ", x);
       for (const double x : row.s) std::printf("%.17g ", x);
@@ -105,17 +105,17 @@ ISOLATE = r"""
 #include "elimination/general_6r_roots.hpp"
 using namespace ikgen_runtime;
 template <int D> int run(double shift) {
-  double shifts[g6::kNodes<D>];
-  std::fill(shifts, shifts + g6::kNodes<D>, shift);
+  double shifts[elimination::kNodes<D>];
+  std::fill(shifts, shifts + elimination::kNodes<D>, shift);
   for (;;) {
-    double f[g6::kNodes<D>];
+    double f[elimination::kNodes<D>];
     for (double& x : f)
       if (std::scanf("%lf", &x) != 1) return 0;
-    g6::Polynomial<D> polynomial = g6::interpolate<D>(f, 0.0);
-    if (shift > 0.0) g6::add_shift<D>(shifts, polynomial);
-    const g6::Brackets<D> found = g6::isolate(polynomial);
-    g6::Roots<D> roots;
-    g6::refine_all(polynomial, found, roots);
+    elimination::Polynomial<D> polynomial = elimination::interpolate<D>(f, 0.0);
+    if (shift > 0.0) elimination::add_shift<D>(shifts, polynomial);
+    const elimination::Brackets<D> found = elimination::isolate(polynomial);
+    elimination::Roots<D> roots;
+    elimination::refine_all(polynomial, found, roots);
     std::printf("%d %d", found.doubt ? 1 : 0, roots.count);
     for (int i = 0; i < roots.count; ++i) std::printf(" %.17g", std::atan2(roots.s[i], roots.c[i]));
     for (int i = 0; i < found.zones; ++i)

@@ -37,27 +37,27 @@ SOLVE = r"""
 using namespace ikgen_runtime;
 template <int Kind> struct Plan {
   static constexpr double kLength = 1.0;
-  static constexpr g6::Parallel kKind = static_cast<g6::Parallel>(Kind);
+  static constexpr elimination::Parallel kKind = static_cast<elimination::Parallel>(Kind);
   static inline std::array<int, 2> kParallel;
   static inline std::array<std::array<int, 2>, 2> kResultants;
   static inline std::array<std::array<int, 3>, 2> kEigenproblems;
 };
 template <class Plan> int run() {
   static double F[7][12], T[12];
-  static g6::Solutions all, blurred;
+  static elimination::Solutions all, blurred;
   int n = 0;
   read(Plan::kParallel.data(), 2, "%d");
   for (auto& plan : Plan::kResultants) read(plan.data(), 2, "%d");
   for (auto& plan : Plan::kEigenproblems) read(plan.data(), 3, "%d");
   read(F[0], 84, "%lf");
-  const g6::Chain chain = g6::chain_of<Plan>(F);
+  const elimination::Chain chain = elimination::chain_of<Plan>(F);
   for (read(&n, 1, "%d"); n > 0; --n) {
     read(T, 12, "%lf");
-    const g6::Frame pose = g6::scaled_frame<Plan>(T);
+    const elimination::Frame pose = elimination::scaled_frame<Plan>(T);
     all.count = blurred.count = 0;
-    const bool alone = g6::run_parallel<Plan::kKind>(chain, pose, Plan::kParallel, blurred, all);
+    const bool alone = elimination::run_parallel<Plan::kKind>(chain, pose, Plan::kParallel, blurred, all);
     all.count = 0;
-    g6::solve_parallel<Plan>(chain, pose, all);
+    elimination::solve_parallel<Plan>(chain, pose, all);
     std::printf("%d ", alone ? 1 : 0);
     for (int k = 0; k < all.count; ++k)
       for (const double x : all.rows[static_cast<std::size_t>(k)].q) std::printf("%.17g ", x);

@@ -13,31 +13,32 @@ RUNS = r"""
 #include "numbers.hpp"
 using namespace ikgen_runtime;
 static int calls, rows;
-static g6::Spectrum found(const g6::Chain&, const g6::Frame&, const g6::Frame&, const g6::Turning& turning,
-                          const std::array<int, 3>&, g6::Solutions& out) {
+static elimination::Spectrum found(const elimination::Chain&, const elimination::Frame&,
+                          const elimination::Frame&, const elimination::Turning& turning,
+                          const std::array<int, 3>&, elimination::Solutions& out) {
   ++calls;
   for (int k = 0; k < rows; ++k)
-    g6::keep(g6::solution_of(turning, {0.02 * k, 0.1, 0.2, 0.3, 0.4, 0.5}), out);
-  g6::Spectrum roots;
+    elimination::keep(elimination::solution_of(turning, {0.02 * k, 0.1, 0.2, 0.3, 0.4, 0.5}), out);
+  elimination::Spectrum roots;
   roots.real = 0;
   roots.simple = false;
   return roots;
 }
 int main() {
-  g6::Chain F{};  // all axes on one line
+  elimination::Chain F{};  // all axes on one line
   for (auto& frame : F) frame.R.v = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
-  const g6::Turning turning = {true, true, true, true, true, true};
+  const elimination::Turning turning = {true, true, true, true, true, true};
   const std::array<std::array<int, 3>, 2> plans = {};
   while (std::scanf("%d", &rows) == 1) {
-    g6::Solutions all;
+    elimination::Solutions all;
     calls = 0;
-    g6::solve_in_runs<found>(F, F[0], turning, plans, all);
+    elimination::solve_in_runs<found>(F, F[0], turning, plans, all);
     std::printf("%d %d\n", calls, all.count);
   }
-  const std::array<g6::Complex, 4> c = {-1.0, 3.0, -3.0, 1.0};  // (z - 1)^3
+  const std::array<elimination::Complex, 4> c = {-1.0, 3.0, -3.0, 1.0};  // (z - 1)^3
   const std::array<double, 4> size = {1.0, 3.0, 3.0, 1.0};
   for (const double off : {1e-2, 1e-6})
-    std::printf("%.17g\n", std::abs(g6::newton_ratio(c, size, 1.0 + off)));
+    std::printf("%.17g\n", std::abs(elimination::newton_ratio(c, size, 1.0 + off)));
 }
 """
 

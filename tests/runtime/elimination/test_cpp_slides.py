@@ -41,19 +41,19 @@ int main() {
   for (auto& plan : Plan::kEigenproblems)
     if (!read(plan.data(), 3, "%d")) return 1;
   if (!read(F[0], 84, "%lf") || !read(&n, 1, "%d")) return 1;
-  g6::Turning turning;
+  elimination::Turning turning;
   for (std::size_t i = 0; i < 6; ++i) {
     turning[i] = turns[i] != 0;
     slides += turning[i] ? 0 : 1;
   }
-  const g6::Chain chain = g6::chain_of<Plan>(F);
+  const elimination::Chain chain = elimination::chain_of<Plan>(F);
   for (; n > 0 && read(T, 12, "%lf"); --n) {
-    g6::Solutions all;
-    const g6::Frame target = g6::scaled_frame<Plan>(T);
+    elimination::Solutions all;
+    const elimination::Frame target = elimination::scaled_frame<Plan>(T);
     if (slides == 1) OneSlideMethod::solve<Plan>(chain, target, turning, all);
     if (slides == 2) TwoSlidesMethod::solve<Plan>(chain, target, turning, all);
     if (slides == 3) ThreeSlidesMethod::solve<Plan>(chain, target, turning, all);
-    g6::sort_rows(turning, all);
+    elimination::sort_rows(turning, all);
     for (int k = 0; k < all.count; ++k)
       for (const double x : all.rows[static_cast<std::size_t>(k)].q) std::printf("%.17g ", x);
     std::printf("\n");

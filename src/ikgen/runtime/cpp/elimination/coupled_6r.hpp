@@ -18,7 +18,7 @@ namespace ikgen_runtime {
 // links behind the second, third and fourth of the five, so that the null spaces by which the three are eliminated are
 // the same for all angles, and the determinant is a trigonometric polynomial.
 
-namespace g6 {
+namespace elimination {
 
 // The twelve equations.
 inline Square coupled_matrix(const Equations& eq) noexcept { return lift(make_pencil(eq.E, eq.left)).at(1.0, 0.0); }
@@ -86,10 +86,10 @@ struct CoupledMethod {
   }
 };
 
-}  // namespace g6
+}  // namespace elimination
 
 // Arm: as for SixJointArm, its Plan as for CoupledChain.
 template <class Arm, class Plan = typename Arm::Plan>
-struct Coupled6r : SixJointArm<Arm, g6::CoupledMethod, g6::CoupledChain<Plan>> {};
+struct Coupled6r : SixJointArm<Arm, elimination::CoupledMethod, elimination::CoupledChain<Plan>> {};
 
 }  // namespace ikgen_runtime

@@ -9,7 +9,7 @@ namespace ikgen_runtime {
 
 // --- coupled_6r: the loop at many angles of the coupled joint, and its equations ---------------------------
 
-namespace g6 {
+namespace elimination {
 
 inline WideFrame compose(const WideFrame& a, const WideFrame& b) noexcept {
   WideFrame out;
@@ -243,5 +243,5 @@ inline void fill(const CoupledEquations<Plan>& of, const Wide& c, const Wide& s,
   for (Index i = 0; i < 6; ++i) A[i][0] = A[i][0] + of.eq.E(i, 14);
 }
 
-}  // namespace g6
+}  // namespace elimination
 }  // namespace ikgen_runtime

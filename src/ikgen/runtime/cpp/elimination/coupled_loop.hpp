@@ -9,7 +9,7 @@ namespace ikgen_runtime {
 
 // --- coupled_6r: a chain in which one joint turns several axes, and the loop of the other five -----------
 
-namespace g6 {
+namespace elimination {
 
 // Plan: kAxes, of the axes in their order along the chain; kCoupled, the joint that turns several; kDegree, of the
 // determinant; kCrowded, angles near which that has roots at every pose; kEigenproblems (start, reverse, degree).
@@ -56,5 +56,5 @@ inline Loop coupled_loop(const CoupledChain<Plan>& F, const Frame& T, const std:
   return out;
 }
 
-}  // namespace g6
+}  // namespace elimination
 }  // namespace ikgen_runtime

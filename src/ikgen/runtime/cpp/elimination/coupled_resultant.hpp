@@ -11,7 +11,7 @@ namespace ikgen_runtime {
 
 // --- coupled_6r: by the trigonometric resultant in the coupled joint's angle -------------------------------
 
-namespace g6 {
+namespace elimination {
 
 inline double length_of(const Frame& X) noexcept {
   return std::sqrt(X.p[0] * X.p[0] + X.p[1] * X.p[1] + X.p[2] * X.p[2]);
@@ -147,5 +147,5 @@ inline bool run_coupled_resultant(const CoupledChain<Plan>& F, const Frame& T, c
   return each && all;
 }
 
-}  // namespace g6
+}  // namespace elimination
 }  // namespace ikgen_runtime

@@ -12,7 +12,7 @@ namespace ikgen_runtime {
 // Elimination of Raghavan & Roth (1990, 1993): by a trigonometric resultant, which says itself where it is not
 // sure, and then by an eigenproblem.
 
-namespace g6 {
+namespace elimination {
 
 // none: whether it was found already that there are no solutions; blurred: those that rounding hides, if any are known. As
 // solve_in_runs.
@@ -28,17 +28,17 @@ template <class Plan> inline bool solve_6r(const Chain& F, const Frame& T, Solut
   return solve_6r<Plan>(F, T, false, blurred, out);
 }
 
-}  // namespace g6
+}  // namespace elimination
 
 // All real solutions of F_0 Rz(q_1) F_1 ... Rz(q_6) F_6 = T, sorted. F: constant rigid transforms, the upper three
 // rows of each by rows; T: the same. Plan: kLength (m), a typical size of the arm; kResultants (start, reverse) and
 // kEigenproblems (start, reverse, swap), arrays of eliminations in order of preference, the former perhaps empty.
 // Joint angles are in (-pi, pi], distinct, and verified to 0.5e-9 (lengths over kLength).
 template <class Plan>
-inline void general_6r(const double (&F)[7][12], const double (&T)[12], g6::Solutions& out) noexcept {
+inline void general_6r(const double (&F)[7][12], const double (&T)[12], elimination::Solutions& out) noexcept {
   out.count = 0;
-  g6::solve_6r<Plan>(g6::chain_of<Plan>(F), g6::scaled_frame<Plan>(T), out);
-  g6::sort_rows(g6::kAllTurn, out);
+  elimination::solve_6r<Plan>(elimination::chain_of<Plan>(F), elimination::scaled_frame<Plan>(T), out);
+  elimination::sort_rows(elimination::kAllTurn, out);
 }
 
 }  // namespace ikgen_runtime

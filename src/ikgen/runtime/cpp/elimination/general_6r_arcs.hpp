@@ -9,7 +9,7 @@ namespace ikgen_runtime {
 // 0, a trigonometric polynomial has Bernstein coefficients of degree 2 D in
 // (sin((w/2 - t)/2), sin((t + w/2)/2)) / sin(w/2), for exp(i m t) is a product of (e, conj e)(exp(i t/2)).
 
-namespace g6 {
+namespace elimination {
 
 inline constexpr int kParts = 8;
 inline constexpr int kLevels = 4;  // of arcs cut from the first ones
@@ -110,5 +110,5 @@ template <int D> inline constexpr Bernstein<D> kBernstein[kLevels + 1] = {
 template <int D> inline constexpr double kWidths[kLevels + 1] = {width_of<D>(0), width_of<D>(1), width_of<D>(2),
                                                                  width_of<D>(3), width_of<D>(4)};
 
-}  // namespace g6
+}  // namespace elimination
 }  // namespace ikgen_runtime

@@ -9,8 +9,8 @@ namespace ikgen_runtime {
 
 struct General6rMethod {
   template <class Plan>
-  static bool solve(const g6::Chain& F, const g6::Frame& T, const g6::Turning&, g6::Solutions& out) noexcept {
-    return g6::solve_6r<Plan>(F, T, out);
+  static bool solve(const elimination::Chain& F, const elimination::Frame& T, const elimination::Turning&, elimination::Solutions& out) noexcept {
+    return elimination::solve_6r<Plan>(F, T, out);
   }
 };
 

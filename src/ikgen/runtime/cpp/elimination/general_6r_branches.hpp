@@ -6,7 +6,7 @@ namespace ikgen_runtime {
 
 // --- general_6r: from theta_3 to all six angles, in lanes -------------------------------------------
 
-namespace g6 {
+namespace elimination {
 
 struct Six {  // cosines and sines of the six joints, base to tip
   Wide c[6], s[6];
@@ -160,5 +160,5 @@ inline Six complete(const Loop& loop, const Equations& eq, const Pencil& pencil,
   return close_loop(loop, eq, U, z);
 }
 
-}  // namespace g6
+}  // namespace elimination
 }  // namespace ikgen_runtime

@@ -11,7 +11,7 @@ namespace ikgen_runtime {
 
 // --- general_6r: a candidate completed and refined, one at a time -----------------------------------
 
-namespace g6 {
+namespace elimination {
 
 // Angles 1 and 2 of the loop from the invariants u of R2^-1 ...: linearly, and by the phase.
 inline std::array<Complex, 2> outer_pair(const Equations& eq, const std::array<double, 14>& u) noexcept {
@@ -255,5 +255,5 @@ template <class Frames>
   return least;
 }
 
-}  // namespace g6
+}  // namespace elimination
 }  // namespace ikgen_runtime

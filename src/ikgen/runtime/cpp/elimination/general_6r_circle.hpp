@@ -8,7 +8,7 @@ namespace ikgen_runtime {
 
 // --- general_6r: trigonometric polynomials of degree D ----------------------------------------------
 
-namespace g6 {
+namespace elimination {
 
 inline constexpr int kDegree = 8;  // of the resultant of any arm
 
@@ -122,5 +122,5 @@ template <int D> inline void add_shift(const double (&shift)[kNodes<D>], Polynom
   f.hopeless = 3.0;
 }
 
-}  // namespace g6
+}  // namespace elimination
 }  // namespace ikgen_runtime

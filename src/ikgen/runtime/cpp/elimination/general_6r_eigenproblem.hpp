@@ -8,7 +8,7 @@ namespace ikgen_runtime {
 
 // --- general_6r: by the eigenproblem ----------------------------------------------------------------
 
-namespace g6 {
+namespace elimination {
 
 // Adds one plan's solutions for the pose T, with the roots of the pose `aim` next to it.
 inline Spectrum run_eigenproblem(const Chain& F, const Frame& T, const Frame& aim, const Turning& turning,
@@ -19,5 +19,5 @@ inline Spectrum run_eigenproblem(const Chain& F, const Frame& T, const Frame& ai
   return run_hidden_angle(F, T, turning, loop, plan, eq, all, out);
 }
 
-}  // namespace g6
+}  // namespace elimination
 }  // namespace ikgen_runtime

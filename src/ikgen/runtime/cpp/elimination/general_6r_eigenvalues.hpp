@@ -13,7 +13,7 @@ namespace ikgen_runtime {
 // Hessenberg form by elimination, then Francis' double shifts (the algorithms elmhes and hqr of Wilkinson &
 // Reinsch 1971).
 
-namespace g6 {
+namespace elimination {
 
 template <Index N>
 inline void hessenberg(Mat<N, N>& a) noexcept {
@@ -172,5 +172,5 @@ inline bool eigenvalues(Mat<N, N>& a, std::array<Complex, N>& out) noexcept {
   return true;
 }
 
-}  // namespace g6
+}  // namespace elimination
 }  // namespace ikgen_runtime

@@ -14,7 +14,7 @@ namespace ikgen_runtime {
 // Raghavan & Roth (1990, 1993): R3 C3 R4 C4 R5 C5 = C2^-1 R2^-1 C1^-1 R1^-1 C6^-1 R6^-1; columns z and p do not
 // contain theta_6, and fourteen functions of them are bilinear in the cosines and sines.
 
-namespace g6 {
+namespace elimination {
 
 using Complex = std::complex<double>;
 
@@ -243,5 +243,5 @@ using Pencil = Turned<6, 12>;
 
 inline Pencil make_pencil(const Mat<6, 16>& E, const Mat<14, 12>& left) noexcept { return turn_through(E, left); }
 
-}  // namespace g6
+}  // namespace elimination
 }  // namespace ikgen_runtime

@@ -11,7 +11,7 @@ namespace ikgen_runtime {
 // --- general_6r: rigid transforms and the closed loop of six joints --------------------------------
 // Plain loops over fixed arrays: Eigen's expressions would cost the including file minutes of compilation.
 
-namespace g6 {
+namespace elimination {
 
 using Index = std::size_t;
 
@@ -96,5 +96,5 @@ inline Loop make_loop(const Chain& F, const Frame& T, Index start, bool reverse)
   return out;
 }
 
-}  // namespace g6
+}  // namespace elimination
 }  // namespace ikgen_runtime

@@ -13,7 +13,7 @@ namespace ikgen_runtime {
 // more the arc is cut. A coefficient within the noise has no sign: such an arc is cut as well, and where that does
 // not help it is handed on as a zone in which nothing is known.
 
-namespace g6 {
+namespace elimination {
 
 template <int D> inline constexpr int kRoots = 2 * D;
 inline constexpr int kMostZones = 8;
@@ -227,5 +227,5 @@ template <int D> inline Brackets<D> isolate(const Polynomial<D>& f) noexcept {
   return out;
 }
 
-}  // namespace g6
+}  // namespace elimination
 }  // namespace ikgen_runtime

@@ -6,7 +6,7 @@ namespace ikgen_runtime {
 
 // --- general_6r: Newton's method on the chain, in lanes ---------------------------------------------
 
-namespace g6 {
+namespace elimination {
 
 // What a chain's end X is off the pose, as the last entry of each row; the largest error of an entry.
 inline Wide set_errors(const Frame& T, const WideFrame& X, Wide (&rows)[6][7]) noexcept {
@@ -98,5 +98,5 @@ inline Errors newton(const Frames& F, const Frame& T, const WideMask& live, Six&
   }
 }
 
-}  // namespace g6
+}  // namespace elimination
 }  // namespace ikgen_runtime

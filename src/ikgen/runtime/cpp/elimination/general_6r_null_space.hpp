@@ -12,7 +12,7 @@ namespace ikgen_runtime {
 // f = det(A A^T) det [...] depends on the basis not even in sign: a trigonometric polynomial of degree 8 whose
 // roots are all solutions' theta_3. Householder's reflections instead of pivoting: no lane waits for another.
 
-namespace g6 {
+namespace elimination {
 
 inline constexpr int kWide = 8;  // lanes, on narrower machines as several vectors, which do not wait for each other
 using Wide = Lanes<kWide>;
@@ -132,5 +132,5 @@ inline void half_angles(const Wide (&basis)[3][9], Wide (&K)[6][N]) noexcept {
     }
 }
 
-}  // namespace g6
+}  // namespace elimination
 }  // namespace ikgen_runtime

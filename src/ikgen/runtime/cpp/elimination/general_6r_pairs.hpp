@@ -11,7 +11,7 @@ namespace ikgen_runtime {
 
 // --- general_6r: theta_4 and theta_5 from null vectors -----------------------------------------------
 
-namespace g6 {
+namespace elimination {
 
 struct Pairs {
   Index count = 0;
@@ -186,5 +186,5 @@ inline Pairs find_pairs(const Square& M) noexcept {
   return out;
 }
 
-}  // namespace g6
+}  // namespace elimination
 }  // namespace ikgen_runtime

@@ -9,7 +9,7 @@ namespace ikgen_runtime {
 
 // --- general_6r: values of the resultant, and how far off they may be --------------------------------
 
-namespace g6 {
+namespace elimination {
 
 // One over what the rows of A are off in proportion to, squared: the largest that they can be, or a share of the largest of
 // all, from which a smaller one is what is left. Where an elimination has no rank a row is nothing but round-off.
@@ -117,5 +117,5 @@ inline void resultants(const Source& p, bool close, const double (&c)[N], const 
   }
 }
 
-}  // namespace g6
+}  // namespace elimination
 }  // namespace ikgen_runtime

@@ -8,7 +8,7 @@ namespace ikgen_runtime {
 
 // --- general_6r: roots to all digits ----------------------------------------------------------------
 
-namespace g6 {
+namespace elimination {
 
 struct Pair {  // cosine and sine
   Wide c, s;
@@ -92,5 +92,5 @@ template <int D> inline void refine_all(const Polynomial<D>& f, const Brackets<D
   }
 }
 
-}  // namespace g6
+}  // namespace elimination
 }  // namespace ikgen_runtime

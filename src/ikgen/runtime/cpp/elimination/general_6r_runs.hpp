@@ -12,7 +12,7 @@ namespace ikgen_runtime {
 
 // --- general_6r: runs of eliminations until one finds all that is known --------------------------------
 
-namespace g6 {
+namespace elimination {
 
 inline constexpr double kFarthest = 1e4;  // of a slide, in arm lengths: beyond are those that become parallel
 
@@ -132,5 +132,5 @@ inline bool solve_in_runs(const Frames& F, const Frame& T, const Turning& turnin
   return out.count == 0 && ranked && least == 0 && !doubtful;
 }
 
-}  // namespace g6
+}  // namespace elimination
 }  // namespace ikgen_runtime

@@ -9,7 +9,7 @@ namespace ikgen_runtime {
 
 // --- general_6r: by the trigonometric resultant -----------------------------------------------------
 
-namespace g6 {
+namespace elimination {
 
 template <int D> struct Rotated {  // the nodes at the angle where they begin
   alignas(64) double c[kNodes<D>], s[kNodes<D>];
@@ -291,5 +291,5 @@ inline bool solve_resultant(const Frames& F, const Frame& T, const Plans& plans,
   return false;
 }
 
-}  // namespace g6
+}  // namespace elimination
 }  // namespace ikgen_runtime

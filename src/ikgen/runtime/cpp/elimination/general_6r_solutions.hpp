@@ -12,7 +12,7 @@ namespace ikgen_runtime {
 
 // --- general_6r: the solutions of a pose ------------------------------------------------------------
 
-namespace g6 {
+namespace elimination {
 
 inline constexpr int kRoom = 64;  // a continuum gives more than the 16 that are apart
 
@@ -72,5 +72,5 @@ inline void sort_rows(const Turning& turning, Solutions& out) noexcept {
   }
 }
 
-}  // namespace g6
+}  // namespace elimination
 }  // namespace ikgen_runtime

@@ -15,7 +15,7 @@ namespace ikgen_runtime {
 // sixteen roots are the eigenvalues of a real 16x16 matrix with nothing extraneous, where Manocha & Canny (1994) have
 // 24x24 and (1 + x^2)^4.
 
-namespace g6 {
+namespace elimination {
 
 // Rows in (1, c, s) x (1, c', s') times cos h and sin h, h half the first angle.
 template <Index R, Index C>
@@ -196,5 +196,5 @@ inline Spectrum find_roots(const Mat<6, 16>& E, const Mat<14, 12>& left, const R
   return out;
 }
 
-}  // namespace g6
+}  // namespace elimination
 }  // namespace ikgen_runtime

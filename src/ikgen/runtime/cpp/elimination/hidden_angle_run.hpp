@@ -10,7 +10,7 @@ namespace ikgen_runtime {
 
 // --- one run of an elimination with a hidden angle and a pair of angles for each of its roots ----------
 
-namespace g6 {
+namespace elimination {
 
 // Adds the solutions of a plan. eq.E and eq.left: its equations; complete(t3, z4, z5): all values of the loop.
 template <class Equations, class Complete>
@@ -38,5 +38,5 @@ inline Spectrum run_hidden_angle(const Chain& F, const Frame& T, const Turning& 
   return roots;
 }
 
-}  // namespace g6
+}  // namespace elimination
 }  // namespace ikgen_runtime

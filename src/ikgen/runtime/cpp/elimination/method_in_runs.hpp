@@ -4,7 +4,7 @@
 
 namespace ikgen_runtime {
 
-namespace g6 {
+namespace elimination {
 
 // The method of a SixJointArm whose Plan has kEigenproblems (start, reverse, swap), in order of preference.
 template <auto Run> struct InRuns {
@@ -14,5 +14,5 @@ template <auto Run> struct InRuns {
   }
 };
 
-}  // namespace g6
+}  // namespace elimination
 }  // namespace ikgen_runtime

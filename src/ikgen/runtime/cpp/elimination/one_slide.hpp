@@ -15,7 +15,7 @@ namespace ikgen_runtime {
 // functions of the other side its monomials 1, d, d^2 are eliminated as cosine and sine would be; six equations are
 // left in three angles, the same as those of six revolute joints.
 
-namespace g6 {
+namespace elimination {
 
 struct OtherSide {  // invariants of M2^-1 C1^-1 M1^-1 C6^-1: a constant and eight monomials
   std::array<double, 14> constant;
@@ -101,9 +101,9 @@ inline Spectrum run_one_slide(const Chain& F, const Frame& T, const Frame& aim, 
   return run_hidden_angle(F, T, turning, loop, plan, eq, all, out);
 }
 
-}  // namespace g6
+}  // namespace elimination
 
-using OneSlideMethod = g6::InRuns<g6::run_one_slide>;
+using OneSlideMethod = elimination::InRuns<elimination::run_one_slide>;
 
 // Arm: as for SixJointArm, its Plan with kEigenproblems (start, reverse, swap), in order of preference.
 template <class Arm> struct OneSlide : SixJointArm<Arm, OneSlideMethod> {};

@@ -9,7 +9,7 @@ namespace ikgen_runtime {
 // Eliminated about these axes, by a polynomial that says itself where it is not sure; what it leaves open, general_6r
 // completes.
 
-namespace g6 {
+namespace elimination {
 
 // Adds the solutions for the pose T. True where they are all, as in `run_resultant`.
 template <Parallel Kind>
@@ -60,10 +60,10 @@ struct Parallel6rMethod {
   }
 };
 
-}  // namespace g6
+}  // namespace elimination
 
 // Arm: as for SixJointArm, its Plan as for general_6r, with kKind, and kParallel, the loop (start, reverse) whose
 // second and third axes are parallel.
-template <class Arm> struct Parallel6r : SixJointArm<Arm, g6::Parallel6rMethod> {};
+template <class Arm> struct Parallel6r : SixJointArm<Arm, elimination::Parallel6rMethod> {};
 
 }  // namespace ikgen_runtime

@@ -8,7 +8,7 @@ namespace ikgen_runtime {
 
 // --- parallel_6r: a loop whose second and third axes are parallel ------------------------------------
 
-namespace g6 {
+namespace elimination {
 
 // Of the links beside the parallel axes: both; right angles between the axes and no offset; axes that meet.
 enum class Parallel { kPlain, kUpright, kMeeting };
@@ -105,5 +105,5 @@ template <Parallel Kind> inline ParallelLoop parallel_loop(const Loop& loop) noe
   return out;
 }
 
-}  // namespace g6
+}  // namespace elimination
 }  // namespace ikgen_runtime

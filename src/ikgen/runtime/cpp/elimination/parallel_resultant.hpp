@@ -10,7 +10,7 @@ namespace ikgen_runtime {
 // cosines and sines of theta_5 and theta_6. The parallel axes' distance is a constant, and so are the products of their
 // direction n with z_1, z_4 and D: a line and a conic, or two lines, that (cos, sin) of theta_5 lies on.
 
-namespace g6 {
+namespace elimination {
 
 struct ParallelProducts {
   Wide z[3], o[3];                      // z_1 and O_1
@@ -231,5 +231,5 @@ inline bool parallel_values(const ParallelLoop& p, const double (&c)[N], const d
   return p.rounded;
 }
 
-}  // namespace g6
+}  // namespace elimination
 }  // namespace ikgen_runtime

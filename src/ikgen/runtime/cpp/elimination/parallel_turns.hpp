@@ -6,7 +6,7 @@ namespace ikgen_runtime {
 
 // --- parallel_6r: from theta_6 to all six angles, in lanes --------------------------------------------
 
-namespace g6 {
+namespace elimination {
 
 // The point of two lines on the circle.
 inline Pair fifth(const ParallelCurves<Parallel::kPlain>& of) noexcept {
@@ -99,5 +99,5 @@ inline Six complete(const Loop& loop, const ParallelLoop& p, const Pair& six, co
   return complete(loop, p.of.side, n, five, six);
 }
 
-}  // namespace g6
+}  // namespace elimination
 }  // namespace ikgen_runtime

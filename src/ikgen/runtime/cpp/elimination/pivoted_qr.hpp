@@ -10,7 +10,7 @@ namespace ikgen_runtime {
 
 // --- reflections of a small matrix (Householder 1958), columns in order of what is left of them ------------
 
-namespace g6 {
+namespace elimination {
 
 template <Index R, Index C>
 struct PivotedQr {
@@ -95,5 +95,5 @@ struct PivotedQr {
   }
 };
 
-}  // namespace g6
+}  // namespace elimination
 }  // namespace ikgen_runtime

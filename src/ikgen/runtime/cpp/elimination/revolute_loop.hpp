@@ -12,7 +12,7 @@ namespace ikgen_runtime {
 
 // --- the closed loop of six joints seen from those that turn: slides leave rotations alone ---------------
 
-namespace g6 {
+namespace elimination {
 
 // R_1 K_1 ... R_r K_r = 1 of r revolute joints, the first of the loop's among them: rotations K and displacements k
 // behind each; the directions u of the slides, each behind the revolute joint of that number `at`.
@@ -145,5 +145,5 @@ inline Vector closed(const RevoluteLoop& loop, const Loop& order, const Angles<d
   return q;
 }
 
-}  // namespace g6
+}  // namespace elimination
 }  // namespace ikgen_runtime

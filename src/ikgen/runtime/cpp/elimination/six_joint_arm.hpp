@@ -11,7 +11,7 @@ namespace ikgen_runtime {
 
 // --- an elimination of six joints for an arm, its held joints at given values --------------------------
 
-namespace g6 {
+namespace elimination {
 
 inline constexpr double kNearlySingular = 1e-3;  // smallest singular value of the slope, lengths over the arm's
 
@@ -82,21 +82,21 @@ inline Frames chain_of(const double (&F)[N][12]) noexcept {
   return out;
 }
 
-}  // namespace g6
+}  // namespace elimination
 
 // Arm: kMotions, in order along the chain, each with `joint` and `revolute`; kFrames, the upper rows of the
 // constants around them; kHeld by joint; kMaxSolutions; Plan, with kLength (m), a typical size of the arm. Six
 // joints are not held. Method::solve<Plan>(chain, pose, turning, found): the elimination, for the chain of their axes,
 // which are six unless Frames has room for more; false where it can't tell whether there are solutions.
-template <class Arm, class Method, class Frames = g6::Chain>
+template <class Arm, class Method, class Frames = elimination::Chain>
 struct SixJointArm {
   static constexpr std::size_t kCount = sizeof(Arm::kMotions) / sizeof(Arm::kMotions[0]);
-  static constexpr int kFrames = sizeof(Frames) / sizeof(g6::Frame);
+  static constexpr int kFrames = sizeof(Frames) / sizeof(elimination::Frame);
   using Plan = typename Arm::Plan;
 
   // The chain of the moving axes, the held joints' values (cosine and sine, or a distance) merged into it.
   static void merge(const double* held, double (&F)[kFrames][12]) noexcept {
-    g6::Frame frame = constant(0);
+    elimination::Frame frame = constant(0);
     int n = 0;
     for (std::size_t i = 0; i < kCount; ++i) {
       const auto& motion = Arm::kMotions[i];
@@ -105,9 +105,9 @@ struct SixJointArm {
         frame = constant(i + 1);
         continue;
       }
-      frame = motion.revolute ? g6::turn(frame, held[0], held[1]) : g6::slide(frame, held[0]);
+      frame = motion.revolute ? elimination::turn(frame, held[0], held[1]) : elimination::slide(frame, held[0]);
       held += motion.revolute ? 2 : 1;
-      frame = g6::compose(frame, constant(i + 1));
+      frame = elimination::compose(frame, constant(i + 1));
     }
     write(frame, F[n]);
   }
@@ -119,14 +119,14 @@ struct SixJointArm {
     double F[kFrames][12], T[12];
     merge(x + 12, F);
     for (int i = 0; i < 12; ++i) T[i] = x[i];
-    g6::Solutions found;
+    elimination::Solutions found;
     found.count = 0;
-    const g6::Turning turns = turning();
-    const Frames chain = g6::chain_of<Plan, Frames>(F);
-    const g6::Frame aim = g6::scaled_frame<Plan>(T);
+    const elimination::Turning turns = turning();
+    const Frames chain = elimination::chain_of<Plan, Frames>(F);
+    const elimination::Frame aim = elimination::scaled_frame<Plan>(T);
     const bool sure = Method::template solve<Plan>(chain, aim, turns, found);
-    g6::sort_rows(turns, found);
-    if (found.count > Arm::kMaxSolutions) g6::leave_most(chain, aim, turns, Arm::kMaxSolutions, found);
+    elimination::sort_rows(turns, found);
+    if (found.count > Arm::kMaxSolutions) elimination::leave_most(chain, aim, turns, Arm::kMaxSolutions, found);
     int count = 0;
     while (count < found.count) {
       write(found.rows[static_cast<std::size_t>(count)], turns, roots[count]);
@@ -136,8 +136,8 @@ struct SixJointArm {
   }
 
  private:
-  static g6::Turning turning() noexcept {
-    g6::Turning out{};
+  static elimination::Turning turning() noexcept {
+    elimination::Turning out{};
     std::size_t place[sizeof(Arm::kHeld)] = {}, n = 0;  // of each joint among those that move
     for (std::size_t j = 0; j < sizeof(Arm::kHeld); ++j) {
       place[j] = n;
@@ -150,8 +150,8 @@ struct SixJointArm {
 
   static constexpr bool is_held(int joint) noexcept { return Arm::kHeld[static_cast<std::size_t>(joint)]; }
 
-  static g6::Frame constant(std::size_t i) noexcept {
-    g6::Frame out;
+  static elimination::Frame constant(std::size_t i) noexcept {
+    elimination::Frame out;
     for (std::size_t r = 0; r < 3; ++r) {
       for (std::size_t c = 0; c < 3; ++c) out.R(r, c) = Arm::kFrames[i][r][c];
       out.p[r] = Arm::kFrames[i][r][3];
@@ -159,14 +159,14 @@ struct SixJointArm {
     return out;
   }
 
-  static void write(const g6::Frame& frame, double (&to)[12]) noexcept {
+  static void write(const elimination::Frame& frame, double (&to)[12]) noexcept {
     for (std::size_t r = 0; r < 3; ++r) {
       for (std::size_t c = 0; c < 3; ++c) to[4 * r + c] = frame.R(r, c);
       to[4 * r + 3] = frame.p[r];
     }
   }
 
-  static void write(const g6::Solution& row, const g6::Turning& turns, double* to) noexcept {
+  static void write(const elimination::Solution& row, const elimination::Turning& turns, double* to) noexcept {
     for (std::size_t i = 0; i < 6; ++i) {
       *to++ = turns[i] ? row.c[i] : row.q[i] * Plan::kLength;
       if (turns[i]) *to++ = row.s[i];

@@ -12,7 +12,7 @@ namespace ikgen_runtime {
 
 // --- three_slides: the rotation gives three angles, the position the lengths of three slides --------------
 
-namespace g6 {
+namespace elimination {
 
 inline Spectrum run_three_slides(const Chain& F, const Frame& T, const Frame& aim, const Turning& turning,
                                  const std::array<int, 3>& plan, Solutions& out) noexcept {
@@ -35,9 +35,9 @@ inline Spectrum run_three_slides(const Chain& F, const Frame& T, const Frame& ai
   return roots;
 }
 
-}  // namespace g6
+}  // namespace elimination
 
-using ThreeSlidesMethod = g6::InRuns<g6::run_three_slides>;
+using ThreeSlidesMethod = elimination::InRuns<elimination::run_three_slides>;
 
 // Arm: as for SixJointArm, its Plan with kEigenproblems, of which the first of each is a revolute joint.
 template <class Arm> struct ThreeSlides : SixJointArm<Arm, ThreeSlidesMethod> {};

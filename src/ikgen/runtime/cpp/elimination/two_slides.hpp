@@ -16,7 +16,7 @@ namespace ikgen_runtime {
 // one, whose cosines and sines have the divisor h = 1 - m^2, m the cosine between the axes beside it; so g+ g- h,
 // over both values, has degree 4 in the hidden angle: the eight solutions that Raghavan & Roth (1993) count.
 
-namespace g6 {
+namespace elimination {
 
 inline constexpr Index kFourNodes = 16;
 inline constexpr double kVanishing = 1e-15;  // value of a polynomial, lengths in the arm's, that is round-off
@@ -161,9 +161,9 @@ inline Spectrum run_two_slides(const Chain& F, const Frame& T, const Frame& aim,
   return roots;
 }
 
-}  // namespace g6
+}  // namespace elimination
 
-using TwoSlidesMethod = g6::InRuns<g6::run_two_slides>;
+using TwoSlidesMethod = elimination::InRuns<elimination::run_two_slides>;
 
 // Arm: as for SixJointArm, its Plan with kEigenproblems, of which the first of each is the joint that is hidden.
 template <class Arm> struct TwoSlides : SixJointArm<Arm, TwoSlidesMethod> {};

@@ -12,7 +12,7 @@ namespace ikgen_runtime {
 // --- roots of a trigonometric polynomial of any degree ---------------------------------------------------
 // All roots z of sum c_k z^k at once, by the iteration of Ehrlich (1967) and Aberth (1973).
 
-namespace g6 {
+namespace elimination {
 
 // Without the library's care for infinities: where there is one, the result is none either.
 inline Complex product(Complex a, Complex b) noexcept {
@@ -152,5 +152,5 @@ inline int look_where_close(const Function& of, double accept, std::array<double
   return count;
 }
 
-}  // namespace g6
+}  // namespace elimination
 }  // namespace ikgen_runtime
