@@ -91,6 +91,15 @@ def test_text_that_cannot_be_imported_is_not_written(
     assert not (tmp_path / "out").exists()
 
 
+def test_a_reader_that_has_enough_is_no_error() -> None:
+    command = [sys.executable, "-m", "ikgen", "inspect", str(FIXTURES / "ur5e.urdf"), "--no-advice"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT) as inspect:
+        assert inspect.stdout is not None
+        inspect.stdout.readline()
+        inspect.stdout.close()
+        assert inspect.wait() == 0
+
+
 def test_json_alone_is_on_stdout(tmp_path: Path) -> None:
     done = ikgen(
         "from-urdf", KUKA, "-o", tmp_path, "--samples", 20, "--json", "--name", "arm", "-v"

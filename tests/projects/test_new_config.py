@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from tests.support.redundant_arms import serial_urdf
 
 from ikgen.errors import UsageError
 from ikgen.generation.request import Request
@@ -138,6 +139,14 @@ def test_arms_between_links_that_are_named() -> None:
         robot_arms(Request(FIXTURES / "scara_standard.toml", base="a"))
     with pytest.raises(UsageError, match="no arm found in 'yumi' below 'gripper_l_finger_r'"):
         robot_arms(replace(yumi, base="gripper_l_finger_r"))
+
+
+def test_an_arm_that_is_too_long_is_refused(tmp_path: Path) -> None:
+    joints = [(f"j{k}", "revolute", "0 0 1", "0.1 0 0", (-1.0, 1.0)) for k in range(40)]
+    path = tmp_path / "snake.urdf"
+    path.write_text(serial_urdf("snake", joints))
+    with pytest.raises(UsageError, match="40 joints move between"):
+        robot_arms(Request(path))
 
 
 def test_robot_without_an_arm_is_refused(tmp_path: Path) -> None:

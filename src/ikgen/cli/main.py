@@ -100,7 +100,7 @@ def run(arguments: Sequence[str]) -> int:
     """Run the command line; the exit code. No exception leaves it."""
     try:
         code = ikgen.main(args=list(arguments), prog_name="ikgen", standalone_mode=False)
-    except BrokenPipeError:
+    except (BrokenPipeError, SystemExit):  # click's exit, where a reader has closed the pipe
         return 0
     except (Exception, KeyboardInterrupt, Terminated) as error:
         return _failed(error, _Wanted.of(arguments))

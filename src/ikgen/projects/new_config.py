@@ -52,6 +52,7 @@ def robot_arms(request: Request) -> tuple[ArmTable, ...]:
         dh = read(request).dh
         return (ArmTable(arm_name(dh.robot), None, None, dh.dof),)
     from ikgen.chains.arms import candidate_chains
+    from ikgen.model.chain import MOST_AXES
 
     tree = read_tree(request)
     chains: dict[str, list[ChainCandidate]] = {}
@@ -68,7 +69,10 @@ def robot_arms(request: Request) -> tuple[ArmTable, ...]:
             hint="write [[arm]] tables with base and tip by hand; ikgen inspect shows the links",
         )
     arms = [_arm(tree.name, tip, ways, several) for tip, ways in chains.items()]
-    return tuple(_told_apart(arms))
+    fit = [arm for arm in arms if arm.dof <= MOST_AXES]
+    if not fit:
+        _chain(tree, arms[0].base, arms[0].tip or "", several)  # says what is too many
+    return tuple(_told_apart(fit))
 
 
 def _chain(tree: JointTree, base: str | None, tip: str, several: bool) -> ArmTable:
