@@ -11,6 +11,7 @@ from ikgen.algebra.expression import BINARY, UNARY, Expr
 from ikgen.equations.equation_set import EquationSet
 from ikgen.equations.probes import dh_pose, elbow_position
 from ikgen.kinematics.fixed_order import cosines, product, sines
+from ikgen.model.entry_names import entry_place
 
 __all__ = ["evaluate"]
 
@@ -31,8 +32,7 @@ def evaluate(
             assert isinstance(key, str)
             if key[0] == "e":
                 return elbow_position(system.dh, values)[:, "xyz".index(key[1])]
-            row = "xyz".index(key[1]) if key[0] == "p" else int(key[1]) - 1
-            column = 3 if key[0] == "p" else int(key[2]) - 1
+            row, column = entry_place(key)
             return np.asarray(pose[:, row, column])
         angle = product(values, np.array(key, dtype=float))
         return np.asarray({"cos": cosines, "sin": sines}.get(kind, np.asarray)(angle))

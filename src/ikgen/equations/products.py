@@ -26,15 +26,9 @@ from ikgen.equations.symbolic_transforms import (
 )
 from ikgen.equations.variables import JointVariables, runs_of
 from ikgen.model.dh import DHChain
+from ikgen.model.entry_names import ENTRY_NAMES
 
-__all__ = ["ENTRY_NAMES", "ChainProducts"]
-
-ENTRY_NAMES = (
-    *(f"r{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3)),
-    "px",
-    "py",
-    "pz",
-)
+__all__ = ["ChainProducts"]
 
 Products = TypeVar("Products", bound="ChainProducts")
 Method = TypeVar("Method", bound=Callable[..., Rigid])

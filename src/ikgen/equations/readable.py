@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ikgen.equations.products import ENTRY_NAMES
 from ikgen.model.dh import DHChain
+from ikgen.model.entry_names import ENTRY_NAMES, entry_name, entry_place
 
 __all__ = ["readable_in_dh"]
 
@@ -25,6 +25,6 @@ def readable_in_dh(dh: DHChain, readable: frozenset[str]) -> frozenset[str]:
 
 def _parts(dh: DHChain, name: str) -> frozenset[str]:
     """The entries of the given pose that an entry is made of."""
-    row = "xyz".index(name[1]) if name[0] == "p" else int(name[1]) - 1
+    row, column = entry_place(name)
     used = np.flatnonzero(np.abs(dh.X_base[:3, row]) > _ABSENT)
-    return frozenset(f"p{'xyz'[k]}" if name[0] == "p" else f"r{k + 1}{name[2]}" for k in used)
+    return frozenset(entry_name(k, column) for k in used.tolist())

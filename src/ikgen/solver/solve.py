@@ -9,9 +9,9 @@ from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.equations.equation_set import EquationSet
 from ikgen.equations.knowledge import Knowledge, Variable
 from ikgen.equations.probes import make_probes
-from ikgen.equations.products import ENTRY_NAMES
 from ikgen.equations.readable import readable_in_dh
 from ikgen.model.dh import DHChain
+from ikgen.model.entry_names import ENTRY_NAMES
 from ikgen.solver.behavior_tree import Tree, outline, the_tree, tick
 from ikgen.solver.leaves import Leaf, all_leaves
 from ikgen.solver.session import Session

@@ -11,6 +11,7 @@ from typing import Any
 from ikgen.algebra.expression import Atom, Expr
 from ikgen.kinematics.rigid import exact_cos_sin
 from ikgen.model.dh import Angle, DHChain, DHRow, Length
+from ikgen.model.entry_names import entry_place
 from ikgen.symbolic.exact_ring import ExactRing
 
 __all__ = ["ExactKinematics", "Ratio"]
@@ -150,8 +151,8 @@ class ExactKinematics:
         if isinstance(key, str):
             if key[0] == "e":
                 return self._elbow()["xyz".index(key[1])]
-            row = "xyz".index(key[1]) if key[0] == "p" else int(key[1]) - 1
-            return self.pose[row][3 if key[0] == "p" else int(key[2]) - 1]
+            row, column = entry_place(key)
+            return self.pose[row][column]
         if atom.kind == "prismatic":
             return r.free(f"slide{key.index(1)}")
         angle = (r.ring.one, r.ring.zero)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from ikgen.errors import UnknownNameError, UsageError
+from ikgen.model.entry_names import entry_name, entry_place
 from ikgen.plugins import find_plug_in, plug_ins
 
 __all__ = ["AXES", "TASKS", "WHOLE_POSE", "Task", "find_task", "task_names"]
@@ -12,8 +13,8 @@ __all__ = ["AXES", "TASKS", "WHOLE_POSE", "Task", "find_task", "task_names"]
 AXES = ("x", "y", "z")
 """The tool's axes, by which a task with a direction goes."""
 
-_POSITION = ("px", "py", "pz")
-_ROTATION = tuple(f"r{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3))
+_POSITION = tuple(entry_name(i, 3) for i in range(3))
+_ROTATION = tuple(entry_name(i, j) for i in range(3) for j in range(3))
 _DIRECTION = ("r13", "r23", "r33")
 _ELEVATION = ("r33",)
 WHOLE_POSE = frozenset(_ROTATION + _POSITION)
@@ -75,10 +76,7 @@ class Task:
     @property
     def entries(self) -> tuple[tuple[int, int], ...]:
         """Row and column (from 0) of each entry that is read, in the order of their names."""
-        names = sorted(self.readable)
-        return tuple(
-            ("xyz".index(n[1]), 3) if n[0] == "p" else (int(n[1]) - 1, int(n[2]) - 1) for n in names
-        )
+        return tuple(entry_place(name) for name in sorted(self.readable))
 
     @property
     def position(self) -> bool:
