@@ -582,6 +582,7 @@ class _Arm:
 
 _FAR_OUT = 1e4  # of the squared derivatives of a row: lever arms of some hundred metres
 _ROUNDING = 4e-15  # of the sum of as many products
+_LOST = 1e-14
 _BLOCK = 1024  # rows whose arrays fit into a processor's cache
 
 
@@ -645,7 +646,7 @@ def _newton(
         Jt = J.transpose(0, 2, 1)
         damping = np.maximum(policy.least_damping, policy.damping * np.minimum(worst, 1.0) ** 2)
         normal = _damped(Jt @ J, damping)
-        change = np.linalg.solve(normal, Jt @ error[on, :, None])[:, :, 0]
+        change = _solved_normal(normal, Jt @ error[on, :, None])[:, :, 0]
         q[:, moving] += _clipped(change, policy.largest_step)
     return result, best, before, slope
 
@@ -686,7 +687,16 @@ def _steeper(slope: Array, bound: float) -> _Flags:
 
 def _normal_inverse(slope: Array, damping: float = 1e-14) -> Array:
     """Inverses (k, n, n) of the normal equations of derivatives (k, m, n)."""
-    return np.asarray(np.linalg.inv(_damped(slope.transpose(0, 2, 1) @ slope, damping)))
+    square = _damped(slope.transpose(0, 2, 1) @ slope, damping)
+    return _solved_normal(square, np.broadcast_to(np.eye(slope.shape[2]), square.shape))
+
+
+def _solved_normal(normal: Array, right: Array) -> Array:
+    """Solutions (k, n, i) of normal equations (k, n, n)."""
+    try:
+        return np.asarray(np.linalg.solve(normal, right))
+    except np.linalg.LinAlgError:
+        return np.asarray(np.linalg.solve(normal + _LOST * np.eye(normal.shape[1]), right))
 
 
 def _damped(square: Array, damping: Array | float) -> Array:
@@ -1108,8 +1118,7 @@ class _Others(NamedTuple):
 
     def take_away(self, z: Array) -> tuple[Array, Array]:
         """What they leave of z (k, m, i), by going (k, n, i)."""
-        solved = np.linalg.solve(self.normal, self.V.transpose(0, 2, 1) @ z)
-        going: Array = np.asarray(solved, dtype=np.float64)
+        going = _solved_normal(self.normal, self.V.transpose(0, 2, 1) @ z)
         return z - self.V @ going, going
 
     def moved(self, arm: _Arm, q: Array, across: Array, along: Array | float) -> Array:

@@ -100,10 +100,14 @@ def run(arguments: Sequence[str]) -> int:
     """Run the command line; the exit code. No exception leaves it."""
     try:
         code = ikgen.main(args=list(arguments), prog_name="ikgen", standalone_mode=False)
-    except (BrokenPipeError, SystemExit):  # click's exit, where a reader has closed the pipe
+    except BrokenPipeError:
         return 0
     except (Exception, KeyboardInterrupt, Terminated) as error:
         return _failed(error, _Wanted.of(arguments))
+    except SystemExit as end:
+        if end.code == 1:  # click's, where a reader has closed the pipe
+            return 0
+        raise  # a completion has ended
     return code if isinstance(code, int) else 0
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from ikgen.algebra.expression import Expr
 from ikgen.equations.knowledge import Variable
 from ikgen.forms.form import Form
-from ikgen.forms.lowered_form import LoweredForm, LoweredRoutine, natural_size
+from ikgen.forms.lowered_form import ROUNDED, LoweredForm, LoweredRoutine, natural_size
 from ikgen.kinematics.whole_turns import middle_of
 from ikgen.lowering.closure import require_closure
 from ikgen.lowering.elbow_position import bind_elbow
@@ -84,13 +84,14 @@ def _step(work: Placement, index: int, step: Step) -> None:
 
 def _given_way(work: Placement, forms: list[LoweredForm]) -> bool:
     """Whether a square root may have been taken of what is far outside its domain, unseen: where a task
-    reads too few entries, no equation but the one that was solved tells."""
+    reads too few entries, or the equation stands for the only one that has this unknown alone, none but the
+    one that was solved tells. Rows of a rounded file for a whole pose are refined, whatever they are."""
     tol = work.tolerances
     sizes = [(f.under[0], natural_size(f.under[1])) for f in forms if f.under]
     far = tol.rough is not None or any(
         tol.folded(e) is not None or tol.least(e, x) > tol.clamp * x for e, x in sizes
     )
-    return far and bool(sizes) and not work.whole_pose
+    return far and bool(sizes) and not (work.whole_pose and work.model_error > ROUNDED)
 
 
 def _excess(work: Placement, v: Variable) -> Expr:

@@ -23,12 +23,14 @@ __all__ = [
     "normal_inverse",
     "refine",
     "smallest_singular_values",
+    "solved_normal",
     "steeper",
 ]
 
 
 _FAR_OUT = 1e4  # of the squared derivatives of a row: lever arms of some hundred metres
 _ROUNDING = 4e-15  # of the sum of as many products
+_LOST = 1e-14
 _BLOCK = 1024  # rows whose arrays fit into a processor's cache
 
 
@@ -98,7 +100,7 @@ def newton(
         Jt = J.transpose(0, 2, 1)
         damping = np.maximum(policy.least_damping, policy.damping * np.minimum(worst, 1.0) ** 2)
         normal = damped(Jt @ J, damping)
-        change = np.linalg.solve(normal, Jt @ error[on, :, None])[:, :, 0]
+        change = solved_normal(normal, Jt @ error[on, :, None])[:, :, 0]
         q[:, moving] += clipped(change, policy.largest_step)
     return result, best, before, slope
 
@@ -141,7 +143,17 @@ def steeper(slope: Array, bound: float) -> Flags:
 
 def normal_inverse(slope: Array, damping: float = 1e-14) -> Array:
     """Inverses (k, n, n) of the normal equations of derivatives (k, m, n); never singular."""
-    return np.asarray(np.linalg.inv(damped(slope.transpose(0, 2, 1) @ slope, damping)))
+    square = damped(slope.transpose(0, 2, 1) @ slope, damping)
+    return solved_normal(square, np.broadcast_to(np.eye(slope.shape[2]), square.shape))
+
+
+def solved_normal(normal: Array, right: Array) -> Array:
+    """Solutions (k, n, i) of normal equations (k, n, n). Where two directions at once do nothing, round-off
+    may leave nothing of the damping: as much is added then."""
+    try:
+        return np.asarray(np.linalg.solve(normal, right))
+    except np.linalg.LinAlgError:
+        return np.asarray(np.linalg.solve(normal + _LOST * np.eye(normal.shape[1]), right))
 
 
 def damped(square: Array, damping: Array | float) -> Array:
