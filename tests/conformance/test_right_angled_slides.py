@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 from tests.support.both_languages import emitted_in_both
+from tests.support.row_gaps import gaps_in_both
 from tests.support.serial_urdf import serial_urdf
 from tests.support.solving import NO_COMPILER
 
 from ikgen.generation.request import Request
+from ikgen.verify.runners.cpp_header import CppHeader
 
 pytestmark = [
     pytest.mark.usefixtures("solved_once"),
@@ -44,6 +48,15 @@ TWO_SLIDES = (
 )
 
 
+def assert_answered(arm: ModuleType, header: CppHeader, poses: NDArray[np.float64]) -> None:
+    """That both have rows for all poses, and right ones."""
+    for found in (arm.solve_batch(poses)[0], header.solve_many(poses).q):
+        there = ~np.isnan(found[..., 0])
+        assert there.any(axis=1).all()
+        off = np.abs(arm.forward(np.nan_to_num(found)) - poses[:, None]).max(axis=(2, 3))
+        assert off[there].max() < 1e-8
+
+
 def test_rows_of_roots_that_are_taken_outside_are_right(tmp_path: Path) -> None:
     axes = ("0 0 1", "1 0 0", "", "-1 0 0", "0 0 1", "1 0 0")
     path = serial_urdf(
@@ -52,14 +65,8 @@ def test_rows_of_roots_that_are_taken_outside_are_right(tmp_path: Path) -> None:
     arm, header = emitted_in_both(Request(path, name="one"), tmp_path)
     random = np.random.default_rng(1)
     q = OUTSIDE[np.arange(300) % 3] + random.normal(size=(300, 6)) * 1e-4
-    poses = arm.forward(q)
-    for found in (arm.solve_batch(poses)[0], header.solve_many(poses).q):
-        there = ~np.isnan(found[..., 0])
-        assert there.any(axis=1).all()
-        off = np.abs(arm.forward(np.nan_to_num(found)) - poses[:, None]).max(axis=(2, 3))
-        assert off[there].max() < 1e-8
-        gap = np.abs(np.remainder(found - q[:, None] + np.pi, 2.0 * np.pi) - np.pi).max(axis=2)
-        assert np.nanmin(gap, axis=1).max() < 1e-4
+    assert_answered(arm, header, arm.forward(q))
+    assert gaps_in_both(arm, header, q).max() < 1e-4
 
 
 def test_poses_at_which_two_directions_are_lost_are_answered(tmp_path: Path) -> None:
@@ -72,9 +79,4 @@ def test_poses_at_which_two_directions_are_lost_are_answered(tmp_path: Path) -> 
     random = np.random.default_rng(0)
     q = random.uniform(-1.0, 1.0, (200, 6))
     q[:, 1:5] = random.choice([0.0, 0.5 * np.pi, -0.5 * np.pi], (200, 4))
-    poses = arm.forward(q)
-    for found in (arm.solve_batch(poses)[0], header.solve_many(poses).q):
-        there = ~np.isnan(found[..., 0])
-        assert there.any(axis=1).all()
-        off = np.abs(arm.forward(np.nan_to_num(found)) - poses[:, None]).max(axis=(2, 3))
-        assert off[there].max() < 1e-8
+    assert_answered(arm, header, arm.forward(q))

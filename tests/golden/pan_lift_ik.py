@@ -646,7 +646,7 @@ def _newton(
         Jt = J.transpose(0, 2, 1)
         damping = np.maximum(policy.least_damping, policy.damping * np.minimum(worst, 1.0) ** 2)
         normal = _damped(Jt @ J, damping)
-        change = _solved_normal(normal, Jt @ error[on, :, None])[:, :, 0]
+        change = _of_normal(np.linalg.solve, normal, Jt @ error[on, :, None])[:, :, 0]
         q[:, moving] += _clipped(change, policy.largest_step)
     return result, best, before, slope
 
@@ -687,16 +687,15 @@ def _steeper(slope: Array, bound: float) -> _Flags:
 
 def _normal_inverse(slope: Array, damping: float = 1e-14) -> Array:
     """Inverses (k, n, n) of the normal equations of derivatives (k, m, n)."""
-    square = _damped(slope.transpose(0, 2, 1) @ slope, damping)
-    return _solved_normal(square, np.broadcast_to(np.eye(slope.shape[2]), square.shape))
+    return _of_normal(np.linalg.inv, _damped(slope.transpose(0, 2, 1) @ slope, damping))
 
 
-def _solved_normal(normal: Array, right: Array) -> Array:
-    """Solutions (k, n, i) of normal equations (k, n, n)."""
+def _of_normal(function: Callable[..., Array], normal: Array, *right: Array) -> Array:
+    """What NumPy's `inv` or `solve` makes of normal equations (k, n, n)."""
     try:
-        return np.asarray(np.linalg.solve(normal, right))
+        return np.asarray(function(normal, *right))
     except np.linalg.LinAlgError:
-        return np.asarray(np.linalg.solve(normal + _LOST * np.eye(normal.shape[1]), right))
+        return np.asarray(function(normal + _LOST * np.eye(normal.shape[1]), *right))
 
 
 def _damped(square: Array, damping: Array | float) -> Array:
@@ -1036,6 +1035,9 @@ def _careful(arm: _Arm, rows: _AllRows, T: Array, held: Array) -> tuple[Array, _
 # Poses that are asked for, and what is answered.
 
 
+_ALL = slice(None)
+
+
 @dataclass(frozen=True)
 class _Asked:
     """Poses `T` (n, 4, 4), seeds `near` (n, dof) if there are any, and values `held` (n, held); what the
@@ -1052,9 +1054,9 @@ class _Asked:
         closed = None if self.closed is None else _some_of(self.closed, index)
         return _Asked(self.T[index], near, self.held[index], closed)
 
-    def aim(self, arm: _Arm) -> Array:
-        """What rows are refined towards (n, ...)."""
-        return _aims(arm, self.T, self.held)
+    def aim(self, arm: _Arm, index: _Index | slice = _ALL) -> Array:
+        """What rows for some of them are refined towards (n, ...)."""
+        return _aims(arm, self.T[index], self.held[index])
 
     def seed(self, k: int) -> Row | None:
         """Of one pose."""
@@ -1118,7 +1120,7 @@ class _Others(NamedTuple):
 
     def take_away(self, z: Array) -> tuple[Array, Array]:
         """What they leave of z (k, m, i), by going (k, n, i)."""
-        going = _solved_normal(self.normal, self.V.transpose(0, 2, 1) @ z)
+        going = _of_normal(np.linalg.solve, self.normal, self.V.transpose(0, 2, 1) @ z)
         return z - self.V @ going, going
 
     def moved(self, arm: _Arm, q: Array, across: Array, along: Array | float) -> Array:
@@ -2373,7 +2375,7 @@ def _take_along(arm: _Arm, asked: _Asked, limits: bool, out: list[_Answer]) -> N
         some = [i for i, rows in enumerate(beyond) if step < len(rows)]
         q = np.array([beyond[i][step] for i in some])
         stands = [(k, row) for k, i in enumerate(some) for row, flag in out[i].rows if flag]
-        for k, row in zip(*_rows_along(arm, q, asked.at(np.array(some)).aim(arm), stands)):
+        for k, row in zip(*_rows_along(arm, q, asked.aim(arm, np.array(some)), stands)):
             _add_inside(arm, asked, some[k], [(tuple(row.tolist()), True)], limits, out)
     which = [i for i, rows in enumerate(beyond) for _ in rows if not out[i].stands]
     if which:
@@ -2396,13 +2398,13 @@ def _outside(arm: _Arm, answer: _Answer, near: Row | None, limits: bool) -> list
 def _add_inside(
     arm: _Arm, asked: _Asked, i: int, found: list[_Found], limits: bool, out: list[_Answer]
 ) -> None:
-    aim = asked.at(np.array([i])).aim(arm)
-    _add_new(arm, aim[0], _rows_inside(arm, aim, found, asked.seed(i), limits), out[i].rows)
+    aim = asked.aim(arm, slice(i, i + 1))
+    _add_new(arm, aim[0], _inside(arm, asked, i, found, limits), out[i].rows)
 
 
 def _inside(arm: _Arm, asked: _Asked, i: int, found: list[_Found], limits: bool) -> list[_Found]:
     """What of the rows of a pose is inside the limits."""
-    aim = asked.at(np.array([i])).aim(arm)
+    aim = asked.aim(arm, slice(i, i + 1))
     return _rows_inside(arm, aim, found, asked.seed(i), limits)
 
 
@@ -2413,7 +2415,7 @@ def _led_to_or_along(arm: _Arm, asked: _Asked, rows: Array) -> list[list[_Found]
     some = np.flatnonzero([not one for one in led])
     if not len(some):
         return led
-    aim, broken = asked.at(some).aim(arm), np.ones(len(some), dtype=bool)
+    aim, broken = asked.aim(arm, some), np.ones(len(some), dtype=bool)
     _, owner, q, sigma = arm.around(arm, rows[some], aim, broken)
     flags = (sigma < arm.policy.continuum_below).tolist()
     for k, row in zip(some[owner].tolist(), zip(map(tuple, q.tolist()), flags)):
@@ -2466,7 +2468,7 @@ def _goes_on(
 ) -> bool:
     """Adds rows to an answer, and says whether other values have to be tried."""
     (kept, free, led), near = rows, asked.seed(k)
-    aim = asked.at(np.array([k])).aim(arm)
+    aim = asked.aim(arm, slice(k, k + 1))
     if not free and any(flag for _, flag in kept):
         kept[:] = [one for one in kept if not (one[1] and _repeats(arm, aim[0], one[0], seeded))]
         _add_new(arm, aim[0], seeded, kept)

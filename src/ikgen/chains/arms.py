@@ -123,8 +123,7 @@ def _best_tip(bodies: RigidBodies, body: Sequence[str], arms: ArmLinks) -> tuple
 
 def _after_floating(path: Sequence[Joint]) -> int:
     """How many joints of a path to leave out so that no floating or planar one remains."""
-    free = (JointType.FLOATING, JointType.PLANAR)
-    return max((i + 1 for i, joint in enumerate(path) if joint.type in free), default=0)
+    return max((i + 1 for i, joint in enumerate(path) if joint.type.moves_on_more_axes), default=0)
 
 
 def _moving(path: Sequence[Joint]) -> tuple[Joint, ...]:

@@ -9,7 +9,7 @@ from ikgen.chains.arms import ChainCandidate, candidate_chains, conventional_bas
 from ikgen.errors import UsageError
 from ikgen.importers.urdf.topology import TreeIndex
 from ikgen.model.counted import counted
-from ikgen.model.joint_tree import Joint, JointTree, JointType
+from ikgen.model.joint_tree import Joint, JointTree
 
 __all__ = ["choose_ends", "not_below"]
 
@@ -54,7 +54,7 @@ def _no_arm(tree: JointTree, index: TreeIndex, base: str | None) -> UsageError:
 
 def _unread(below: Iterable[Joint]) -> str:
     """In words, the joints that move on more axes than one; "" for none."""
-    free = [one for one in below if one.type in (JointType.PLANAR, JointType.FLOATING)]
+    free = [one for one in below if one.type.moves_on_more_axes]
     if not free:
         return ""
     return f" on one axis: '{free[0].name}' is {free[0].type.value}, which no chain can be solved through"

@@ -13,7 +13,7 @@ from ikgen.errors import UnknownNameError, UnsupportedJointError, UsageError
 from ikgen.importers.urdf.topology import TreeIndex
 from ikgen.importers.xml_document import shown_file
 from ikgen.model.chain import MOST_AXES, Chain
-from ikgen.model.joint_tree import Joint, JointTree, JointType
+from ikgen.model.joint_tree import Joint, JointTree
 
 __all__ = ["select_chain"]
 
@@ -58,7 +58,7 @@ def select_chain(
 
 def _check_types(tree: JointTree, path: Sequence[Joint]) -> None:
     for joint in path:
-        if joint.type in (JointType.FLOATING, JointType.PLANAR):
+        if joint.type.moves_on_more_axes:
             raise UnsupportedJointError(
                 f"joint '{joint.name}' between base and tip is {joint.type.value}: it has no "
                 "single axis",

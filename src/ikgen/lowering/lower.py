@@ -83,9 +83,9 @@ def _step(work: Placement, index: int, step: Step) -> None:
 
 
 def _given_way(work: Placement, forms: list[LoweredForm]) -> bool:
-    """Whether a square root may have been taken of what is far outside its domain, unseen: where a task
-    reads too few entries, or the equation stands for the only one that has this unknown alone, none but the
-    one that was solved tells. Rows of a rounded file for a whole pose are refined, whatever they are."""
+    """Whether a square root may have been taken of what is far outside its domain, unseen: other equations
+    need not tell it, as those of a task that reads too few entries. Rows of a rounded file for a whole pose
+    are refined, whatever they are."""
     tol = work.tolerances
     sizes = [(f.under[0], natural_size(f.under[1])) for f in forms if f.under]
     far = tol.rough is not None or any(

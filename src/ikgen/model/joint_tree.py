@@ -31,6 +31,11 @@ class JointType(Enum):
         """Whether the joint has one axis and one value."""
         return self in (JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC)
 
+    @property
+    def moves_on_more_axes(self) -> bool:
+        """Whether the joint moves, but has no single axis."""
+        return self in (JointType.FLOATING, JointType.PLANAR)
+
 
 @dataclass(frozen=True, slots=True)
 class Limits:

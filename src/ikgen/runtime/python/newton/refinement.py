@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from math import inf
 
 import numpy as np
@@ -21,9 +21,9 @@ __all__ = [
     "least_singular",
     "newton",
     "normal_inverse",
+    "of_normal",
     "refine",
     "smallest_singular_values",
-    "solved_normal",
     "steeper",
 ]
 
@@ -100,7 +100,7 @@ def newton(
         Jt = J.transpose(0, 2, 1)
         damping = np.maximum(policy.least_damping, policy.damping * np.minimum(worst, 1.0) ** 2)
         normal = damped(Jt @ J, damping)
-        change = solved_normal(normal, Jt @ error[on, :, None])[:, :, 0]
+        change = of_normal(np.linalg.solve, normal, Jt @ error[on, :, None])[:, :, 0]
         q[:, moving] += clipped(change, policy.largest_step)
     return result, best, before, slope
 
@@ -143,17 +143,16 @@ def steeper(slope: Array, bound: float) -> Flags:
 
 def normal_inverse(slope: Array, damping: float = 1e-14) -> Array:
     """Inverses (k, n, n) of the normal equations of derivatives (k, m, n); never singular."""
-    square = damped(slope.transpose(0, 2, 1) @ slope, damping)
-    return solved_normal(square, np.broadcast_to(np.eye(slope.shape[2]), square.shape))
+    return of_normal(np.linalg.inv, damped(slope.transpose(0, 2, 1) @ slope, damping))
 
 
-def solved_normal(normal: Array, right: Array) -> Array:
-    """Solutions (k, n, i) of normal equations (k, n, n). Where two directions at once do nothing, round-off
-    may leave nothing of the damping: as much is added then."""
+def of_normal(function: Callable[..., Array], normal: Array, *right: Array) -> Array:
+    """What NumPy's `inv` or `solve` makes of normal equations (k, n, n). Where two directions at once do
+    nothing, round-off may leave nothing of the damping: as much is added then."""
     try:
-        return np.asarray(np.linalg.solve(normal, right))
+        return np.asarray(function(normal, *right))
     except np.linalg.LinAlgError:
-        return np.asarray(np.linalg.solve(normal + _LOST * np.eye(normal.shape[1]), right))
+        return np.asarray(function(normal + _LOST * np.eye(normal.shape[1]), *right))
 
 
 def damped(square: Array, damping: Array | float) -> Array:

@@ -13,7 +13,7 @@ from ikgen.runtime.python.arm.solved_arm import Arm
 from ikgen.runtime.python.arrays.array_tuples import some_of
 from ikgen.runtime.python.arrays.array_types import Array, Flags
 from ikgen.runtime.python.newton.arm_newton import linearized, moved_rows
-from ikgen.runtime.python.newton.refinement import clipped, damped, normal_inverse, solved_normal
+from ikgen.runtime.python.newton.refinement import clipped, damped, normal_inverse, of_normal
 
 __all__ = [
     "Reduced",
@@ -54,7 +54,7 @@ class _Others(NamedTuple):
 
     def take_away(self, z: Array) -> tuple[Array, Array]:
         """What they leave of z (k, m, i), by going (k, n, i)."""
-        going = solved_normal(self.normal, self.V.transpose(0, 2, 1) @ z)
+        going = of_normal(np.linalg.solve, self.normal, self.V.transpose(0, 2, 1) @ z)
         return z - self.V @ going, going
 
     def moved(self, arm: Arm, q: Array, across: Array, along: Array | float) -> Array:

@@ -14,6 +14,8 @@ from ikgen.runtime.python.solving.closed_form_rows import AllRows
 
 __all__ = ["Answer", "Asked"]
 
+_ALL = slice(None)
+
 
 @dataclass(frozen=True)
 class Asked:
@@ -31,9 +33,9 @@ class Asked:
         closed = None if self.closed is None else some_of(self.closed, index)
         return Asked(self.T[index], near, self.held[index], closed)
 
-    def aim(self, arm: Arm) -> Array:
-        """What rows are refined towards (n, ...)."""
-        return aims(arm, self.T, self.held)
+    def aim(self, arm: Arm, index: Index | slice = _ALL) -> Array:
+        """What rows for some of them are refined towards (n, ...)."""
+        return aims(arm, self.T[index], self.held[index])
 
     def seed(self, k: int) -> Row | None:
         """Of one pose."""

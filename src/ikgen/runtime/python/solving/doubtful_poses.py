@@ -61,7 +61,7 @@ def _goes_on(
 ) -> bool:
     """Adds rows to an answer, and says whether other values have to be tried."""
     (kept, free, led), near = rows, asked.seed(k)
-    aim = asked.at(np.array([k])).aim(arm)
+    aim = asked.aim(arm, slice(k, k + 1))
     if not free and any(flag for _, flag in kept):
         kept[:] = [one for one in kept if not (one[1] and repeats(arm, aim[0], one[0], seeded))]
         add_new(arm, aim[0], seeded, kept)

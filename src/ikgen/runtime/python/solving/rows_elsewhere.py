@@ -72,7 +72,7 @@ def take_along(arm: Arm, asked: Asked, limits: bool, out: list[Answer]) -> None:
         some = [i for i, rows in enumerate(beyond) if step < len(rows)]
         q = np.array([beyond[i][step] for i in some])
         stands = [(k, row) for k, i in enumerate(some) for row, flag in out[i].rows if flag]
-        for k, row in zip(*rows_along(arm, q, asked.at(np.array(some)).aim(arm), stands)):
+        for k, row in zip(*rows_along(arm, q, asked.aim(arm, np.array(some)), stands)):
             _add_inside(arm, asked, some[k], [(tuple(row.tolist()), True)], limits, out)
     which = [i for i, rows in enumerate(beyond) for _ in rows if not out[i].stands]
     if which:
@@ -95,13 +95,13 @@ def _outside(arm: Arm, answer: Answer, near: Row | None, limits: bool) -> list[R
 def _add_inside(
     arm: Arm, asked: Asked, i: int, found: list[Found], limits: bool, out: list[Answer]
 ) -> None:
-    aim = asked.at(np.array([i])).aim(arm)
-    add_new(arm, aim[0], rows_inside(arm, aim, found, asked.seed(i), limits), out[i].rows)
+    aim = asked.aim(arm, slice(i, i + 1))
+    add_new(arm, aim[0], _inside(arm, asked, i, found, limits), out[i].rows)
 
 
 def _inside(arm: Arm, asked: Asked, i: int, found: list[Found], limits: bool) -> list[Found]:
     """What of the rows of a pose is inside the limits."""
-    aim = asked.at(np.array([i])).aim(arm)
+    aim = asked.aim(arm, slice(i, i + 1))
     return rows_inside(arm, aim, found, asked.seed(i), limits)
 
 
@@ -118,7 +118,7 @@ def _led_to_or_along(arm: Arm, asked: Asked, rows: Array) -> list[list[Found]]:
         for k, found in zip(some.tolist(), led_to(arm, asked.at(some), there)):
             led[k] = found
         return led
-    aim, broken = asked.at(some).aim(arm), np.ones(len(some), dtype=bool)
+    aim, broken = asked.aim(arm, some), np.ones(len(some), dtype=bool)
     _, owner, q, sigma = arm.around(arm, rows[some], aim, broken)
     flags = (sigma < arm.policy.continuum_below).tolist()
     for k, row in zip(some[owner].tolist(), zip(map(tuple, q.tolist()), flags)):
