@@ -48,6 +48,21 @@ def three_joints(lengths: tuple[float, ...], folder: Path) -> ArmUnderTest:
     return under_test(oracle_from_dh(read_dh_table(table)[1]), "position")
 
 
+def two_slides(folder: Path) -> ArmUnderTest:
+    """Two slides whose directions an angle between them tells apart, for the whole pose."""
+    rows = (
+        ("prismatic", 0.0, 0.0, 0.0), ("revolute", 0.5, 0.0, 0.0), ("prismatic", -0.5, 0.906, 0.5),
+        ("revolute", -0.5, 0.549, 0.0), ("prismatic", -0.5, 0.0, -0.5), ("revolute", -0.5, 0.0, 0.0),
+    )  # fmt: skip
+    joints = (
+        f'[[joints]]\ntype = "{kind}"\nalpha = "{alpha}*pi"\na = {a}\nd = 0\ntheta = "{theta}*pi"\n'
+        for kind, alpha, a, theta in rows
+    )
+    table = folder / "slides.toml"
+    table.write_text('name = "arm"\nconvention = "modified"\n' + "".join(joints), encoding="utf-8")
+    return under_test(oracle_from_dh(read_dh_table(table)[1]), "pose")
+
+
 def under_test(oracle: Oracle, task: str) -> ArmUnderTest:
     """An arm without limits."""
     free = np.full(oracle.dof, np.inf)
@@ -92,3 +107,13 @@ def test_a_stretched_elbow_is_no_continuum() -> None:
     q = np.array([[0.3, 0.5, 0.0, 0.4, 0.6, -1.0]])
     assert arm.sigma(q)[0] < 1e-9
     assert not on_continuum(arm, q, arm.oracle.forward(q)).any()
+
+
+def test_slides_far_out_whose_directions_are_nearly_parallel_are_no_continuum(
+    tmp_path: Path,
+) -> None:
+    arm = two_slides(tmp_path)
+    wrist = (-3.1417317533, -8.0982153e-5, 1.5708010291)
+    q = np.array([[1e4, aside, -1e4, *wrist] for aside in (-1.7e-4, 0.0)])
+    assert (arm.sigma(q) < 1e-9).all()
+    assert on_continuum(arm, q, arm.oracle.forward(q)).tolist() == [False, True]

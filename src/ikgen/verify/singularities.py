@@ -63,7 +63,9 @@ def on_continuum(arm: ArmUnderTest, q: Array, targets: Array) -> NDArray[np.bool
     Step along the null direction and return to the target: an isolated singular solution (a
     stretched elbow) falls back to where it was, one of a continuum (aligned wrist axes) does not.
     Steps of several lengths may all end at one other isolated solution, so the ends of a continuum
-    must differ from each other too, and the shortest step must leave as well.
+    must differ from each other too, and the shortest step must leave as well. Where slides are far out,
+    directions that differ by their inverse change the pose by rounding for many lengths of the arm: there
+    steps are of the slides' own size.
     """
     flags = np.zeros(len(q), dtype=bool)
     candidates = np.flatnonzero(arm.sigma(q) < CONTINUUM_SIGMA)
@@ -72,8 +74,11 @@ def on_continuum(arm: ArmUnderTest, q: Array, targets: Array) -> NDArray[np.bool
     active = list(arm.active)
     J = arm.scaled_jacobian(q[candidates])[1]
     null = np.linalg.svd(J, full_matrices=True)[2][:, -1]
+    slides = np.abs(q[candidates][:, active]) / arm.length
+    size_of = np.where(arm.revolute[active], 1.0, np.maximum(slides, 1.0))
+    farther = np.abs(null).max(axis=1) / np.abs(null / size_of).max(axis=1)
     step = np.zeros((len(candidates), arm.dof))
-    step[:, active] = null * np.where(arm.revolute[active], 1.0, arm.length)
+    step[:, active] = null * np.where(arm.revolute[active], 1.0, arm.length) * farther[:, None]
     flags[candidates] = True
     aims = arm.aims(q[candidates], targets[candidates])
     passed = [q[candidates]]  # where the steps before came from and went
