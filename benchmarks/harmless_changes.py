@@ -188,7 +188,7 @@ HARMLESS = (
     ),
     HarmlessChange(
         "runtime/python/elimination/hidden_angle.py",
-        "_NODES = 2.0 * np.pi / 7.0 * np.arange(7)",
+        "NODES = 2.0 * np.pi / 7.0 * np.arange(7)",
         "2.0", "3.0", "other angles all over the turn, of which the best is taken",
     ),
     HarmlessChange(

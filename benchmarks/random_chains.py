@@ -4,10 +4,10 @@
         [--search N] [--derive-only] [--emit python,cpp] [--log FILE] [--again] [--done] [--record]
 
 Modified DH tables, each through `ikgen from-dh` with its whole verification, special poses included.
-Classes are `3-6`, 300 tables of so many joints, a quarter of them prismatic, twists of 0 and ±90 degrees
-and about half of the lengths zero; and `6R`, `5R1P` and `4R2P`, together 100 of arbitrary twists, whose
-solutions at 20 poses a table are compared with those of an independent search, Newton's method from many
-random starts, which goes on longer where it has found fewer.
+Classes are `3-6`, 300 tables of so many joints, a quarter of them prismatic, twists (of slides theta
+too) of 0 and ±90 degrees and about half of the lengths zero; and `6R`, `5R1P` and `4R2P`, together 100 of
+arbitrary twists, whose solutions at 20 poses a table are compared with those of an independent search,
+Newton's method from many random starts, which goes on longer where it has found fewer.
 Any other class of these forms (`4-5`, `3R2P`) may be named. Arms whose joints are not independent (a
 smaller rank than joints) are drawn again: they have infinitely many solutions.
 

@@ -25,8 +25,8 @@ _SLIDING = 0.25
 @dataclass(frozen=True, slots=True)
 class Drawn:
     """What is drawn: from `least` to `most` joints, `slides` of them prismatic (None: a quarter, by
-    chance), with twists of 0 and ±90 degrees and half of the lengths zero, or of `any_angle` and few
-    lengths zero."""
+    chance), with twists (of slides theta too) of 0 and ±90 degrees and half of the lengths zero, or of
+    `any_angle` and few lengths zero."""
 
     least: int = 3
     most: int = 6
@@ -52,8 +52,8 @@ def _draw(rng: np.random.Generator, drawn: Drawn) -> DHChain:
         a = _length(rng, f"a_{i}", 0.2 if drawn.any_angle else 0.5) if i else _NONE
         d = _length(rng, f"d_{i + 1}", 0.2 if drawn.any_angle else 0.6)
         offset: Angle | Length = _STRAIGHT if turns else _NONE
-        placed = d if turns else _NONE
-        rows.append(DHRow(f"q{i + 1}", kind, alpha, a, placed, _STRAIGHT, i, 1.0, offset))
+        placed, theta = (d, _STRAIGHT) if turns else (_NONE, _twist(rng, drawn))
+        rows.append(DHRow(f"q{i + 1}", kind, alpha, a, placed, theta, i, 1.0, offset))
         joints.append(ActuatedJoint(f"q{i + 1}", kind, Limits(-np.inf, np.inf)))
     eye = np.eye(4)
     return DHChain("random", "base", "tip", tuple(joints), tuple(rows), eye, eye, _frames(rows))
@@ -85,9 +85,7 @@ def _frames(rows: Sequence[DHRow]) -> tuple[np.ndarray, ...]:
     frames = [np.eye(4)]
     for row in rows:
         frames[-1] = frames[-1] @ dh_link(row.alpha.value, row.a.value, 0.0, 0.0)
-        after = np.eye(4)
-        after[2, 3] = row.d.value
-        frames.append(after)
+        frames.append(dh_link(0.0, 0.0, row.theta.value, row.d.value))
     return tuple(frames)
 
 
@@ -95,21 +93,22 @@ def table_text(dh: DHChain, name: str) -> str:
     """The chain as a file for `ikgen from-dh`."""
     out = [f'name = "{name}"', 'convention = "modified"']
     for row in dh.rows:
-        exact = row.alpha.exact
-        twist = (
-            repr(row.alpha.value)
-            if exact is None
-            else f'"{exact.numerator}*pi/{exact.denominator}"'
-        )
         out += [
             "[[joints]]",
             f'type = "{"revolute" if row.revolute else "prismatic"}"',
-            f"alpha = {twist}",
+            f"alpha = {_angle_text(row.alpha)}",
             f"a = {row.a.value!r}",
             f"d = {row.d.value!r}",
-            "theta = 0",
+            f"theta = {_angle_text(row.theta)}",
         ]
     return "\n".join(out) + "\n"
+
+
+def _angle_text(angle: Angle) -> str:
+    exact = angle.exact
+    if exact is None:
+        return repr(angle.value)
+    return f'"{exact.numerator}*pi/{exact.denominator}"'
 
 
 def pattern(dh: DHChain) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 import pytest
@@ -34,7 +35,9 @@ def general_frames(seed: int) -> Array:
     return dh_frames(alpha.tolist(), a.tolist(), d.tolist())
 
 
-def dh_frames(alpha: list[float], a: list[float], d: list[float]) -> Array:
+def dh_frames(
+    alpha: list[float], a: list[float], d: list[float], theta: Sequence[float] = (0.0,) * 6
+) -> Array:
     """Seven transforms of modified DH constants."""
     frames = [np.eye(4) for _ in range(7)]
     for i in range(6):
@@ -42,13 +45,15 @@ def dh_frames(alpha: list[float], a: list[float], d: list[float]) -> Array:
         frames[i] = frames[i] @ np.array(
             [[1, 0, 0, a[i]], [0, c, -s, 0], [0, s, c, 0], [0, 0, 0, 1]]
         )
-        frames[i + 1][2, 3] = d[i]
+        c, s = math.cos(theta[i]), math.sin(theta[i])
+        frames[i + 1] = np.array([[c, -s, 0, 0], [s, c, 0, 0], [0, 0, 1, d[i]], [0, 0, 0, 1]])
     return np.array(frames)
 
 
 def solver(plan: EliminationPlan) -> Plan:
     """What is embedded of a plan."""
-    return Plan(plan.length, plan.eliminations, plan.turning, finder(plan.turning))
+    find = finder(plan.turning, both=plan.both)
+    return Plan(plan.length, plan.eliminations, plan.turning, find)
 
 
 def regular(frames: Array, turning: Turning, drawn: Array) -> Array:
@@ -157,9 +162,54 @@ def test_right_angles_and_poses_at_multiples_of_them(kinds: str) -> None:
     assert_closed(frames, turning, found, poses)
 
 
-def test_unreachable_and_distant_poses_have_no_solution() -> None:
+WITHOUT_RANK = {
+    "RRPRRR": ([0, H, H, H, H, H], [0, 0.124, 0.091, 0, 0.099, 0], [0, 0.012, 0, 0, 0, 0], 2),
+    "RPRRRR": ([0, H, H, H, H, 0], [0, 0.035, 0, 0, 0, 0.14], [0, 0, 0, 0.294, 0, 0], 1),
+    "RRRRPR": ([0, H, H, H, H, H], [0, 0, 0.901, 0, 0, 0.756], [0, 0, 0, 0, 0, 0.83], 4),
+}
+"""The same, the slide turned by a right angle: by half angles of one angle M is singular everywhere."""
+
+
+def without_rank(kinds: str) -> tuple[Turning, Array]:
+    """One of those."""
+    alpha, a, d, slide = WITHOUT_RANK[kinds]
+    theta = [H if i == slide else 0.0 for i in range(6)]
+    return turning_of(kinds), dh_frames(alpha, a, d, theta)
+
+
+@pytest.mark.parametrize("kinds", WITHOUT_RANK)
+def test_right_angles_that_leave_half_angles_of_one_angle_without_rank(kinds: str) -> None:
+    turning, frames = without_rank(kinds)
+    plan = choose_plan(frames, turning)
+    rng = np.random.default_rng(2)
+    step = rng.integers(-2, 3, (400, 6)) * np.where(turning, H, 0.25)
+    special = regular(frames, turning, step)[:40]
+    q = np.concatenate([configurations(frames, turning, 60), special])
+    poses = np.array([forward(frames, row, turning) for row in q])
+    found = six_joints_batch(frames, solver(plan), poses)
+    assert plan.both and plan.recall == 1.0 and len(special) > 20
+    assert missing(found, q, turning) == 0
+    assert_closed(frames, turning, found, poses)
+    assert all(len(rows) % 2 == 0 for rows in found)
+    for k, pose in enumerate(poses[:3]):
+        axes = one_axis_each(turning)
+        for other in searched(frames, axes, turning, plan.length, pose, seed=k):
+            assert apart(found[k], other, turning).min() < 1e-4
+
+
+def test_half_angles_of_one_angle_are_enough_elsewhere() -> None:
     turning, frames = turning_of("RRRPRR"), general_frames(seed=3)
-    plan = choose_plan(frames, turning, probes=4)
+    assert not choose_plan(frames, turning, probes=4).both
+
+
+def test_unreachable_and_distant_poses_have_no_solution() -> None:
+    general = turning_of("RRRPRR"), general_frames(seed=3)
+    for turning, frames in (general, without_rank("RPRRRR")):
+        plan = choose_plan(frames, turning, probes=4)
+        assert_nothing(frames, plan)
+
+
+def assert_nothing(frames: Array, plan: EliminationPlan) -> None:
     for nonsense in (np.full((4, 4), np.nan), np.zeros((4, 4)), np.full((4, 4), 1e200)):
         assert len(six_joints_batch(frames, solver(plan), nonsense[None])[0]) == 0
 

@@ -22,23 +22,27 @@ TURNS: tuple[Row, ...] = (
 )  # fmt: skip
 
 
-def solver_module(slide: int | None) -> SolverModule:
+def solver_module(slide: int | None, *, both: bool = False) -> SolverModule:
     """Of a general arm whose joint `slide` (from 0) slides."""
     rows = [("P" if k == slide else kind, *rest) for k, (kind, *rest) in enumerate(TURNS)]
     dh = table(*rows)
     frames, turning = held_frames(dh), tuple(k != slide for k in range(6))
     length = typical_length(frames, turning)
     resultants = ((0, 0),) if slide is None else ()
-    plan = EliminationPlan(frames, length, ((1, 0, 0),), 1.0, resultants, turning)
+    plan = EliminationPlan(frames, length, ((1, 0, 0),), 1.0, resultants, turning, both=both)
+    program = elimination_program(dh, 16, both=both)
     return SolverModule(
-        name="arm", program=elimination_program(dh, 16), dh=dh, task="pose", free=(), free_defaults=(),
+        name="arm", program=program, dh=dh, task="pose", free=(), free_defaults=(),
         source_name="arm.toml", source_sha256="0" * 64, generator_version="test", plan=plan,
     )  # fmt: skip
 
 
-@pytest.mark.parametrize(("slide", "name"), [(None, "General6r"), (2, "OneSlide")])
-def test_the_elimination_is_named(slide: int | None, name: str) -> None:
-    text = emit_header(solver_module(slide))
+@pytest.mark.parametrize(
+    ("slide", "both", "name"),
+    [(None, False, "General6r"), (2, False, "OneSlide"), (2, True, "OneSlideBoth")],
+)
+def test_the_elimination_is_named(slide: int | None, both: bool, name: str) -> None:
+    text = emit_header(solver_module(slide, both=both))
     assert text.count(f"  return {name}<Arm>::branches(") == 1
 
 

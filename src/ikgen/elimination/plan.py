@@ -65,7 +65,8 @@ class EliminationPlan:
     looked at closely. tool: the tool's axis (0: x) that the last joint turns about, where the task leaves
     that turn open; it is none of the arm's joints. steady: whether a resultant has separate roots at the
     held joints' special values too, among which their defaults often are; without one the eigenproblem
-    serves there, at twenty times the cost.
+    serves there, at twenty times the cost. both: whether both angles beside the hidden one are taken by
+    half angles, as either alone leaves no rank.
     """
 
     frames: Matrix
@@ -79,6 +80,7 @@ class EliminationPlan:
     crowded: tuple[tuple[float, int], ...] = ()
     tool: int | None = None
     steady: bool = True
+    both: bool = False
 
     @property
     def coupled(self) -> int:
@@ -105,8 +107,11 @@ class EliminationPlan:
         return self.recall > 0.98
 
 
-def eliminations(turning: Turning) -> tuple[Elimination, ...]:
-    """All that there are for six joints of which some slide."""
+def eliminations(turning: Turning, *, both: bool = False) -> tuple[Elimination, ...]:
+    """All that there are for six joints of which some slide; those by half angles of `both` angles, which
+    swapping leaves as they are."""
+    if both:
+        return tuple(e for e in eliminations(turning) if not e[2])
     slides = turning.count(False)
     if slides == 0:
         return _ALL
@@ -133,10 +138,32 @@ def choose_plan(
     family = family[None] if family.ndim == 3 else family
     if family.ndim != 4 or family.shape[1:] != (7, 4, 4):
         raise ValueError(f"frames of six joints are (7, 4, 4), not {np.shape(frames)}")
-    rng = np.random.default_rng(0)
+    plan = _chosen(family, turning, special, probes)
+    if not plan.usable and turning.count(False) == 1:
+        plan = max(
+            plan, _chosen(family, turning, special, probes, both=True), key=lambda p: p.recall
+        )
+    return plan
+
+
+def _chosen(
+    family: Matrix,
+    turning: Turning,
+    special: Sequence[Matrix],
+    probes: int,
+    *,
+    both: bool = False,
+) -> EliminationPlan:
+    """The best eliminations of one sort for a family (m, 7, 4, 4)."""
+    rng, ways = np.random.default_rng(0), eliminations(turning, both=both)
     each = max(probes // len(family), 2)
-    plain = _joined([_probe(member, turning, each, rng) for member in family])
-    every = _joined([plain, *(_probe(member, turning, _SPECIAL_PROBES, rng) for member in special)])
+
+    def probed(member: Matrix, count: int) -> _Probe:
+        length, find = typical_length(member, turning), finder(turning, both=both)
+        return _probe(member, [Plan(length, (e,), turning, find) for e in ways], count, rng)
+
+    plain = _joined([probed(member, each) for member in family])
+    every = _joined([plain, *(probed(member, _SPECIAL_PROBES) for member in special)])
     order = ranking(every.hits, every.rough, opposite=2 if turning.count(False) == 2 else 0)
     everywhere, elsewhere = _separate(every.shifts), _separate(plain.shifts)
     separate = dict.fromkeys([*everywhere, *elsewhere])
@@ -144,12 +171,13 @@ def choose_plan(
     return EliminationPlan(
         frames=first,
         length=typical_length(first, turning),
-        eliminations=tuple(eliminations(turning)[k] for k in order),
+        eliminations=tuple(ways[k] for k in order),
         recall=float(plain.hits[order[0]].mean()) if plain.hits.size else 0.0,
         resultants=tuple(RESULTANTS[k] for k in [*separate][:_KEPT]),
         turning=turning,
         parallel=choose_parallel(family) if all(turning) else None,
         steady=bool(everywhere) or not elsewhere,
+        both=both,
     )
 
 
@@ -199,14 +227,13 @@ def _joined(parts: Sequence[_Probe]) -> _Probe:
     return _Probe(hits, rough, shifts)
 
 
-def _probe(frames: Matrix, turning: Turning, count: int, rng: np.random.Generator) -> _Probe:
-    length, plans = typical_length(frames, turning), eliminations(turning)
+def _probe(frames: Matrix, every: Sequence[Plan], count: int, rng: np.random.Generator) -> _Probe:
+    length, turning = every[0].length, every[0].turning
     q = _configurations(frames, turning, count, rng)
     if not len(q):  # singular everywhere: two axes on one line, or four that keep parallel
-        hits = np.zeros((len(plans), 0), dtype=bool)
-        return _Probe(hits, np.zeros(len(plans)), np.ones(len(RESULTANTS)))
-    poses, find = forward(frames, q, turning), finder(turning)
-    every = [Plan(length, (e,), turning, find) for e in plans]
+        hits = np.zeros((len(every), 0), dtype=bool)
+        return _Probe(hits, np.zeros(len(every)), np.ones(len(RESULTANTS)))
+    poses = forward(frames, q, turning)
     runs = initial_residuals(frames, every, poses)
     rough = np.array([digits_lost(errors) for _, errors in runs])
     unions = [distinct_of_runs([rows[i] for rows, _ in runs], turning) for i in range(len(poses))]

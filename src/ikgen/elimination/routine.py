@@ -20,7 +20,10 @@ from ikgen.runtime.python.elimination.general_6r import (
     refined_rows,
     six_joint_rows,
 )
-from ikgen.runtime.python.elimination.one_slide import one_slide_candidates
+from ikgen.runtime.python.elimination.one_slide import (
+    one_slide_both_candidates,
+    one_slide_candidates,
+)
 from ikgen.runtime.python.elimination.six_joints import six_joints
 from ikgen.runtime.python.elimination.three_slides import three_slide_candidates
 from ikgen.runtime.python.elimination.two_slides import two_slide_candidates
@@ -52,9 +55,10 @@ _FINDERS: tuple[Finder, ...] = (
 )
 
 
-def finder(turning: Turning) -> Finder:
-    """The function that finds candidates of six joints of which some slide."""
-    return _FINDERS[turning.count(False)]
+def finder(turning: Turning, *, both: bool = False) -> Finder:
+    """The function that finds candidates of six joints of which some slide; of one slide by half angles of
+    `both` angles beside the hidden one, or of either."""
+    return one_slide_both_candidates if both else _FINDERS[turning.count(False)]
 
 
 def six_joints_batch(frames: Matrix, plan: Plan, poses: Matrix) -> list[Matrix]:

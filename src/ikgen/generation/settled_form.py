@@ -25,7 +25,8 @@ def settled_form(found: ClosedForm, progress: Progress) -> tuple[ClosedForm, Pro
 
     dh = found.reading.dh
     if found.plan:
-        return found, elimination_program(dh, found.plan.most, found.plan.tool)
+        plan = found.plan
+        return found, elimination_program(dh, plan.most, plan.tool, both=plan.both)
 
     def solve(passed_over: tuple[Variable, ...]) -> SolutionGraph:
         return by_rules(dh, found.task, progress, passed_over)

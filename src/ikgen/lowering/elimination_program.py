@@ -35,10 +35,13 @@ def _coupled(dh: DHChain) -> bool:
     return len(dh.rows) > dh.dof
 
 
-def elimination_program(dh: DHChain, most: int, tool: int | None = None) -> Program:
+def elimination_program(
+    dh: DHChain, most: int, tool: int | None = None, *, both: bool = False
+) -> Program:
     """All joints that are not held from one call of an elimination (Raghavan and Roth 1993), which has at
     `most` so many solutions. `tool`: the tool's axis (0: x) whose direction alone is read beside the
-    position; the last joint that the elimination finds turns about it, and is none of the arm's."""
+    position; the last joint that the elimination finds turns about it, and is none of the arm's. `both`: by
+    half angles of both angles beside the hidden one."""
     columns = range(4) if tool is None else (tool, 3)
     pose = tuple(PoseEntry(i, j) for i in range(3) for j in columns)
     completed, entries = _whole_pose(tool)
@@ -54,7 +57,7 @@ def elimination_program(dh: DHChain, most: int, tool: int | None = None) -> Prog
     if tool is not None:
         found += (f"c{dh.dof + 1}", f"s{dh.dof + 1}")
     routine = "coupled_6r" if _coupled(dh) else _ROUTINES[_slides(dh)]
-    call = Call(routine, (*entries, *given), found)
+    call = Call(routine + "_both" * both, (*entries, *given), found)
     values = [_value(dh, j) for j in moving]
     body: tuple[Statement, ...] = (
         Comment(f"all joints at once: the general {elimination_name(dh)} elimination"),

@@ -59,6 +59,7 @@ class Call:
     | `trig_quartic_wide` | these, and the largest imaginary part (rad) of roots that count | the same |
     | `general_6r` | pose, held joints | six revolute joints |
     | `one_slide` | pose, held joints | five revolute joints and a slide |
+    | `one_slide_both` | pose, held joints | the same where half angles of one angle leave no rank |
     | `two_slides` | pose, held joints | four revolute joints and two slides |
     | `three_slides` | pose, held joints | three revolute joints and three slides |
     | `coupled_6r` | pose, held joints | six revolute joints, of which one moves several axes |

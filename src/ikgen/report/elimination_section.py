@@ -16,6 +16,12 @@ _SLIDE = (
     "where its length to the powers 0, 1 and 2 takes the place of 1, cosine and sine of an angle, and "
     "is eliminated like them."
 )
+_BOTH = (
+    "With the right angles of this arm these twelve equations have the same rank at every angle. "
+    "Multiplied by the fifth angle's exponential as well they are 24 in sixteen monomials, and lose "
+    "rank at solutions alone. Times their pseudo-inverse at an angle where they have full rank they "
+    "are a square matrix with 32 roots; those at which the 24 keep their rank are left out."
+)
 _TWO_SLIDES = (
     "No unknown of this arm can be solved alone. Slides leave rotations alone: the rotation of the "
     "four revolute joints leaves one angle free, which is hidden. The opposite angle has two values, "
@@ -52,23 +58,31 @@ _PARALLEL = (
 
 
 def elimination_section(
-    slides: int = 0, order: Sequence[str] = (), *, parallel: bool = False, coupled: int = 0
+    slides: int = 0,
+    order: Sequence[str] = (),
+    *,
+    parallel: bool = False,
+    coupled: int = 0,
+    both: bool = False,
 ) -> list[Block]:
     """The elimination of six joints of which some slide, in words and equations; `order` names the joints
     as this arm's loop reads them; `parallel`: an elimination about two parallel axes comes first;
-    `coupled`: the degree in the angle of a joint that turns several axes, 0 where none does."""
+    `coupled`: the degree in the angle of a joint that turns several axes, 0 where none does; `both`: by
+    half angles of both angles beside the hidden one."""
     if coupled:
         return [Paragraph((_COUPLED.format(degree=coupled),))]
     if slides >= 2:
         return [Paragraph((_TWO_SLIDES if slides == 2 else _THREE_SLIDES,))]
     first = [Paragraph((_PARALLEL,))] if parallel else []
     read = f"The loop of this arm reads its joints in the order {', '.join(order)}."
-    words = [read] * bool(order) + [_SLIDE] * bool(slides)
-    return [*first, *_revolute(slides), *(Paragraph((text,)) for text in words)]
+    words = [_BOTH] * both + [read] * bool(order) + [_SLIDE] * bool(slides)
+    ways = 24 if not slides else 4 if both else 8
+    return [*first, *_revolute(ways), *(Paragraph((text,)) for text in words)]
 
 
-def _revolute(slides: int) -> list[Block]:
-    """Raghavan and Roth's elimination, in words and in its three equations."""
+def _revolute(ways: int) -> list[Block]:
+    """Raghavan and Roth's elimination, in words and in its three equations; in how many `ways` a loop is
+    written."""
     return [
         Paragraph((
             "No unknown of this arm can be solved alone. Its six angles come from the "
@@ -101,7 +115,7 @@ def _revolute(slides: int) -> list[Block]:
             ", the pose ", m.name("z", "6"), "; Newton steps sharpen each, and forward "
             "kinematics "
             "decides. Which angle is hidden, and in which direction the loop is read, "
-            f"was chosen by trying all {8 if slides else 24} ways on configurations of this arm.",
+            f"was chosen by trying all {ways} ways on configurations of this arm.",
         )),
     ]  # fmt: skip
 

@@ -76,8 +76,13 @@ def _solution(page: SolvedPage) -> list[Block]:
     plan = page.derivation.module.plan
     if plan is not None:
         slides, order = plan.turning.count(False), loop_order(page.reading.dh, plan)
-        parallel = plan.parallel is not None
-        blocks += elimination_section(slides, order, parallel=parallel, coupled=plan.degree)
+        blocks += elimination_section(
+            slides,
+            order,
+            parallel=plan.parallel is not None,
+            coupled=plan.degree,
+            both=plan.both,
+        )
         if page.example is not None:
             blocks += roots_blocks(page.reading.dh, plan, page.example)
     return blocks

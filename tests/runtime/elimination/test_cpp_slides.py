@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from tests.elimination.test_slides import (
+    WITHOUT_RANK,
     apart,
     configurations,
     general_frames,
@@ -15,6 +16,7 @@ from tests.elimination.test_slides import (
     solver,
     surgical,
     turning_of,
+    without_rank,
 )
 from tests.support.routines import compiled_header, feed
 
@@ -27,6 +29,7 @@ Array = NDArray[np.float64]
 SOLVE = r"""
 #include "numbers.hpp"
 #include "elimination/one_slide.hpp"
+#include "elimination/one_slide_both.hpp"
 #include "elimination/three_slides.hpp"
 #include "elimination/two_slides.hpp"
 using namespace ikgen_runtime;
@@ -36,8 +39,8 @@ struct Plan {
 };
 int main() {
   static double F[7][12], T[12];
-  int turns[6], slides = 0, n = 0;
-  if (!read(turns, 6, "%d")) return 1;
+  int turns[6], slides = 0, both = 0, n = 0;
+  if (!read(turns, 6, "%d") || !read(&both, 1, "%d")) return 1;
   for (auto& plan : Plan::kEigenproblems)
     if (!read(plan.data(), 3, "%d")) return 1;
   if (!read(F[0], 84, "%lf") || !read(&n, 1, "%d")) return 1;
@@ -50,7 +53,8 @@ int main() {
   for (; n > 0 && read(T, 12, "%lf"); --n) {
     elimination::Solutions all;
     const elimination::Frame target = elimination::scaled_frame<Plan>(T);
-    if (slides == 1) OneSlideMethod::solve<Plan>(chain, target, turning, all);
+    if (slides == 1 && both) OneSlideBothMethod::solve<Plan>(chain, target, turning, all);
+    if (slides == 1 && !both) OneSlideMethod::solve<Plan>(chain, target, turning, all);
     if (slides == 2) TwoSlidesMethod::solve<Plan>(chain, target, turning, all);
     if (slides == 3) ThreeSlidesMethod::solve<Plan>(chain, target, turning, all);
     elimination::sort_rows(turning, all);
@@ -68,19 +72,21 @@ def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.parametrize(
-    "kinds", ["RRRPRR", "PRRRRR", "RPRPRR", "RRPPRR", "PRRPRR", "RPRPRP", "small"]
+    "kinds", ["RRRPRR", "PRRRRR", "RPRPRR", "RRPPRR", "PRRPRR", "RPRPRP", "small", *WITHOUT_RANK]
 )
 def test_rows_are_those_of_python(program: Path, kinds: str) -> None:
     turning, frames = turning_of(kinds), general_frames(seed=3)
     if kinds == "small":
         turning, frames = surgical()
+    if kinds in WITHOUT_RANK:
+        turning, frames = without_rank(kinds)
     plan = choose_plan(frames, turning, probes=8)
     q = configurations(frames, turning, 60, seed=11)
     poses = np.array([forward(frames, row, turning) for row in q])
     scaled, targets = frames.copy(), poses.copy()
     scaled[:, :3, 3] /= plan.length
     targets[:, :3, 3] /= plan.length
-    head = [*turning, *np.ravel(plan.eliminations)]
+    head = [*turning, plan.both, *np.ravel(plan.eliminations)]
     numbers = [*head, *scaled[:, :3].ravel(), len(q), *targets[:, :3].ravel()]
     unit = np.where(turning, 1.0, plan.length)
     lines = feed(program, [float(x) for x in numbers])

@@ -188,6 +188,7 @@ _PARALLEL_KINDS = ("kPlain", "kUpright", "kMeeting")
 _ELIMINATIONS = {
     "general_6r": "General6r",
     "one_slide": "OneSlide",
+    "one_slide_both": "OneSlideBoth",
     "two_slides": "TwoSlides",
     "three_slides": "ThreeSlides",
     "coupled_6r": "Coupled6r",

@@ -98,8 +98,9 @@ inline void add_product(double factor, const Mat<AR, AC>& A, Index ra, Index ca,
 // nearly all.
 inline constexpr double kNoRank = 1e9, kNoPivot = 1e11;
 
-// rad: imaginary part below which a root may be half of a double one, and one of four a quarter of a fourfold one.
-inline constexpr double kHalf = 1e-3, kQuarter = 4e-3;
+// rad: imaginary part below which a root is real, or may be half of a double one, and one of four a quarter of a fourfold
+// one.
+inline constexpr double kReal = 1e-8, kHalf = 1e-3, kQuarter = 4e-3;
 
 struct Spectrum {
   int count = 0;  // roots theta_3 with imaginary parts below `accept`
@@ -137,19 +138,29 @@ inline void best_node(const Resultant& M, Node& out) noexcept {
   }
 }
 
-// The roots theta_3 of eigenvalues t: modulus and angle of (1 + i t) / (1 - i t).
+struct Root {
+  double angle, off;  // the real part, and how large the imaginary one is
+};
+
+// node + 2 atan(t): modulus and angle of (1 + i t) / (1 - i t).
+inline Root root_of(const Complex& t, double node) noexcept {
+  const double a = t.real(), b = t.imag();
+  const double off = std::abs(0.5 * std::log(((1.0 - b) * (1.0 - b) + a * a + 1e-300) /
+                                             ((1.0 + b) * (1.0 + b) + a * a + 1e-300)));
+  return {node + std::atan2(a, 1.0 - b) + std::atan2(a, 1.0 + b), off};
+}
+
+// The roots theta_3 of eigenvalues t.
 template <Index N>
 inline void add_angles(const std::array<Complex, N>& t, double node, double accept, Spectrum& out) noexcept {
   int quarters = 0;
   for (const Complex& e : t) {
-    const double a = e.real(), b = e.imag();
-    const double off = std::abs(0.5 * std::log(((1.0 - b) * (1.0 - b) + a * a + 1e-300) /
-                                               ((1.0 + b) * (1.0 + b) + a * a + 1e-300)));
-    if (!(off < accept)) continue;
-    out.theta[static_cast<Index>(out.count++)] = node + std::atan2(a, 1.0 - b) + std::atan2(a, 1.0 + b);
-    out.real += off < 1e-8 ? 1 : 0;
-    out.perhaps += off < kHalf ? 1 : 0;
-    quarters += off < kQuarter ? 1 : 0;
+    const Root root = root_of(e, node);
+    if (!(root.off < accept)) continue;
+    out.theta[static_cast<Index>(out.count++)] = root.angle;
+    out.real += root.off < kReal ? 1 : 0;
+    out.perhaps += root.off < kHalf ? 1 : 0;
+    quarters += root.off < kQuarter ? 1 : 0;
   }
   out.simple = out.count == out.real;
   out.doubtful = out.perhaps > out.real || quarters >= out.real + 4;

@@ -19,6 +19,7 @@ struct PivotedQr {
   std::array<Index, C> column;
   Index rank = 0;
 
+  PivotedQr() noexcept = default;
   explicit PivotedQr(const Mat<R, C>& given) noexcept : a(given) {
     for (Index k = 0; k < C; ++k) column[k] = k;
     double first = 0.0;
@@ -37,6 +38,20 @@ struct PivotedQr {
   }
   void turn_back(std::array<double, R>& x) const noexcept {
     for (Index k = rank; k-- > 0;) reflect(mirror[k], x);
+  }
+
+  // Least squares of several columns; zero where the rank leaves a choice.
+  template <Index N> Mat<C, N> solve_all(Mat<R, N> b) const noexcept {
+    for (Index k = 0; k < rank; ++k) reflect_rows(mirror[k], 0, b);
+    Mat<C, N> x{};
+    for (Index k = rank; k-- > 0;) {
+      double* row = &x(column[k], 0);
+      for (Index n = 0; n < N; ++n) row[n] = b(k, n);
+      for (Index j = k + 1; j < rank; ++j)
+        for (Index n = 0; n < N; ++n) row[n] -= a(k, j) * x(column[j], n);
+      for (Index n = 0; n < N; ++n) row[n] /= a(k, k);
+    }
+    return x;
   }
 
   // Least squares; zero where the rank leaves a choice.
@@ -59,21 +74,24 @@ struct PivotedQr {
     for (Index i = 0; i < R; ++i) x[i] -= 2.0 * dot * h[i];
   }
 
+  // The columns from `from` on.
+  template <Index N> static void reflect_rows(const std::array<double, R>& h, Index from, Mat<R, N>& b) noexcept {
+    std::array<double, N> dot{};
+    for (Index i = 0; i < R; ++i)
+      for (Index j = from; j < N; ++j) dot[j] += h[i] * b(i, j);
+    for (Index i = 0; i < R; ++i)
+      for (Index j = from; j < N; ++j) b(i, j) -= 2.0 * dot[j] * h[i];
+  }
+
   // Brings the largest column left over to place k; its size.
   double pivot(Index k) noexcept {
-    Index best = k;
-    double big = -1.0;
-    for (Index j = k; j < C; ++j) {
-      double square = 0.0;
-      for (Index i = k; i < R; ++i) square += a(i, j) * a(i, j);
-      if (square > big) {
-        big = square;
-        best = j;
-      }
-    }
+    std::array<double, C> square{};
+    for (Index i = k; i < R; ++i)
+      for (Index j = k; j < C; ++j) square[j] += a(i, j) * a(i, j);
+    const auto best = static_cast<Index>(std::max_element(square.begin() + k, square.end()) - square.begin());
     for (Index i = 0; i < R; ++i) std::swap(a(i, k), a(i, best));
     std::swap(column[k], column[best]);
-    return std::sqrt(big);
+    return std::sqrt(square[best]);
   }
 
   void reflect_columns(Index k) noexcept {
@@ -86,12 +104,7 @@ struct PivotedQr {
     const double norm = std::sqrt(square), size = std::sqrt(2.0 * (square + std::abs(h[k]) * norm));
     h[k] += std::copysign(norm, h[k]);
     for (double& e : h) e = size > 0.0 ? e / size : 0.0;
-    for (Index j = k; j < C; ++j) {
-      std::array<double, R> x;
-      for (Index i = 0; i < R; ++i) x[i] = a(i, j);
-      reflect(h, x);
-      for (Index i = 0; i < R; ++i) a(i, j) = x[i];
-    }
+    reflect_rows(h, k, a);
   }
 };
 

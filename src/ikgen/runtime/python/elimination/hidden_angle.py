@@ -15,7 +15,12 @@ from ikgen.runtime.python.elimination.loop_equations import XS, YS, ZS
 
 __all__ = [
     "DOUBTFUL",
+    "NODES",
+    "NO_PIVOT",
+    "REAL",
     "Resultant",
+    "all_clear",
+    "angles_off",
     "hidden_angles",
     "lift",
     "loop_resultant",
@@ -24,13 +29,13 @@ __all__ = [
 ]
 
 Resultant = tuple[Array, Array, Array]
-_NODES = 2.0 * np.pi / 7.0 * np.arange(7)
-_REAL = 1e-8  # rad: imaginary part below which a root is real
+NODES = 2.0 * np.pi / 7.0 * np.arange(7)
+REAL = 1e-8  # rad: imaginary part below which a root is real
 DOUBTFUL = 1e-3  # rad: imaginary part below which a root may be half of a double one
 _FOURFOLD = 0.03  # rad: imaginary part below which a root may be a quarter of a fourfold one
 _CROWD = 8.0  # how far off the other pair of a fourfold root is at most, over the imaginary part
 _NO_RANK = 1e9  # entry of the eigenproblem above which half of a root's digits are rounding
-_NO_PIVOT = 1e11  # condition of M at the node above which nearly all are
+NO_PIVOT = 1e11  # condition of M at the node above which nearly all are
 _LIFT = np.kron(  # of 1, c and s by half angles, times cos h and times sin h
     np.array(
         [
@@ -70,7 +75,7 @@ def hidden_angles(
     With `M(theta) = M0 + N Rot(theta) W`, Rot = c + s J on R^16, about a node where `M_pi = M0 - N
     W` is far from singular: tan(theta/2) are the eigenvalues of `-J (1 + 2 W M_pi^-1 N)`.
     """
-    c, s = np.cos(_NODES)[:, None, None], np.sin(_NODES)[:, None, None]
+    c, s = np.cos(NODES)[:, None, None], np.sin(NODES)[:, None, None]
     at_node = M[0][:, None] - c * M[1][:, None] - s * M[2][:, None]
     k = np.abs(np.linalg.det(at_node)).argmax(axis=1)
     row = np.arange(len(at_node))
@@ -84,9 +89,9 @@ def hidden_angles(
     found = solved(pivot, np.concatenate([N, unit], axis=2))
     K = np.eye(16) + 2.0 * W @ found[:, :, :16]
     t = np.linalg.eigvals(np.concatenate([K[:, 8:], -K[:, :8]], axis=1))
-    pose, angle, real, clear = real_angles(t, _NODES[k], accept)
+    pose, angle, real, clear = real_angles(t, NODES[k], accept)
     condition = np.abs(pivot).max(axis=(1, 2)) * np.abs(found[:, :, 16:]).max(axis=(1, 2))
-    real[(np.abs(K).max(axis=(1, 2)) > _NO_RANK) | (condition > _NO_PIVOT)] = -1
+    real[(np.abs(K).max(axis=(1, 2)) > _NO_RANK) | (condition > NO_PIVOT)] = -1
     return pose, angle, real, clear
 
 
@@ -99,18 +104,30 @@ def real_angles(
     """Those angles `about + 2 atan(t)`, about (N,) and t (N, n) complex, of which the imaginary part is
     below `accept`: as `hidden_angles` has them. With one below `doubtful` (or that of each, (N, 1)) a root
     is not clearly complex."""
+    angle, off = angles_off(t, about)
+    row, i = np.nonzero(off < accept)
+    order = np.lexsort((angle[row, i], row))
+    real = (off < REAL).sum(axis=1)
+    return row[order], angle[row, i][order], real, all_clear(angle, off, doubtful)
+
+
+def angles_off(t: Array | NDArray[np.complex128], about: Array) -> tuple[Array, Array]:
+    """Real parts (N, n) of the angles `about + 2 atan(t)`, about (N,) and t (N, n) complex, and how large
+    their imaginary ones are."""
     # angle and modulus of (1 + i t) / (1 - i t)
     z = (1.0 + 1j * t) / np.where(t == -1j, 1e-300, 1.0 - 1j * t)
     off = np.abs(np.log(np.maximum(np.abs(z), 1e-300)))
-    real = (off < _REAL).sum(axis=1)
-    row, i = np.nonzero(off < accept)
-    angle = about[row] + np.angle(z[row, i])
-    order = np.lexsort((angle, row))
-    clear = (off < doubtful).sum(axis=1) == real
+    return np.asarray(about[:, None] + np.angle(z)), off
+
+
+def all_clear(angle: Array, off: Array, doubtful: float | Array = DOUBTFUL) -> Flags:
+    """Of which rows (N,) each root (N, n) of these real and imaginary parts is clearly real or clearly
+    complex."""
+    clear = (off < doubtful).sum(axis=1) == (off < REAL).sum(axis=1)
     apart = (off < _FOURFOLD) & (off >= doubtful)
     some = np.nonzero(clear & apart.any(axis=1))[0]
-    clear[some] = ~(apart[some] & _crowded(np.angle(z[some]), off[some])).any(axis=1)
-    return row[order], angle[order], real, clear
+    clear[some] = ~(apart[some] & _crowded(angle[some], off[some])).any(axis=1)
+    return np.asarray(clear)
 
 
 def _crowded(angle: Array, off: Array) -> Flags:

@@ -7,14 +7,15 @@ angles, the same as those of six revolute joints.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from ikgen.runtime.python.arrays.array_types import Array, Flags, Index
+from ikgen.runtime.python.arrays.array_types import Array
 from ikgen.runtime.python.arrays.rigid_motion import inverses, motions_z, rotations_z
 from ikgen.runtime.python.elimination.back_substitution import middle_angles, turned
-from ikgen.runtime.python.elimination.general_6r import Elimination
+from ikgen.runtime.python.elimination.both_half_angles import both_angles
+from ikgen.runtime.python.elimination.general_6r import Candidates, Elimination
 from ikgen.runtime.python.elimination.loop_equations import (
     FIT,
     ROTATIONS,
@@ -25,9 +26,11 @@ from ikgen.runtime.python.elimination.loop_equations import (
     loop_constants,
     of_constants,
 )
-from ikgen.runtime.python.rows.solution_rows import rows_of
+from ikgen.runtime.python.rows.solution_rows import Turning, rows_of
 
-__all__ = ["one_slide_candidates"]
+__all__ = ["one_slide_both_candidates", "one_slide_candidates"]
+
+Middle = Callable[[Array, Array, int], Candidates]
 
 _SLIDE_SAMPLES = np.array([0.0, 1.0, -1.0])
 _SAMPLED_SLIDES = motions_z(_SLIDE_SAMPLES)
@@ -37,10 +40,23 @@ _PARABOLA = np.array(
 
 
 def one_slide_candidates(
-    F: Sequence[Array], T: Array, elimination: Elimination, turning: tuple[bool, ...]
-) -> tuple[Index, Array, Index, Flags]:
+    F: Sequence[Array], T: Array, elimination: Elimination, turning: Turning
+) -> Candidates:
     """Approximate solutions of a chain whose joint that is not `turning` comes first or second. The result
     is that of `candidates`."""
+    return _candidates(F, T, elimination, turning, middle_angles)
+
+
+def one_slide_both_candidates(
+    F: Sequence[Array], T: Array, elimination: Elimination, turning: Turning
+) -> Candidates:
+    """The same by half angles of both angles beside the hidden one."""
+    return _candidates(F, T, elimination, turning, both_angles)
+
+
+def _candidates(
+    F: Sequence[Array], T: Array, elimination: Elimination, turning: Turning, angles_of: Middle
+) -> Candidates:
     start, reverse, swap = elimination
     order, C = loop_constants(F, T, start, reverse)
     first = not turning[order[0]]
@@ -50,7 +66,7 @@ def one_slide_candidates(
     top = np.swapaxes(basis, 1, 2)
     E = top @ of_constants(loop_action, C[1])
     E[..., 14] -= (top @ right[..., :1])[..., 0]
-    pose, t, least, clear = middle_angles(E, left, swap)
+    pose, t, least, clear = angles_of(E, left, swap)
     if not len(pose):
         return pose, np.zeros((0, 6)), least, clear
     found = _with_slide(
