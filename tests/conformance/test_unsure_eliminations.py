@@ -11,7 +11,9 @@ from benchmarks.agreement import arm_of, runner_of
 from tests.support.dh_files import dh_file
 from tests.support.sampled import in_languages
 from tests.support.serial_urdf import serial_urdf
+from tests.support.solving import import_text
 
+from ikgen.emit.python.python_emitter import emit_module
 from ikgen.generation.derive import derive
 from ikgen.generation.request import Request
 from ikgen.verify.completeness import survey
@@ -63,3 +65,67 @@ def test_rounding_takes_double_roots_far_apart(tmp_path: Path) -> None:
     assert 1e-6 < sample.sigma[0] < 1e-5
     runner = runner_of(derivation, "python", tmp_path)
     assert not survey(arm, runner, [run_trial(runner, arm, sample, limits=True)]).missed.any()
+
+
+Q, H = "1.5707963267948966", "3.141592653589793"
+BESIDE_A_CONTINUUM = (
+    ("-0.141 0 0.318", f"0 -{Q} {Q}"), ("0.102 0 0", f"{Q} 0 0"), ("-0.128 0 0", f"{Q} {Q} {Q}"),
+    ("-0.109 0 0", f"{Q} 0 -{Q}"), ("-0.137 0.123 0", "0 0 0"),
+)  # fmt: skip
+
+POSES_ON_IT = [
+    (
+        (-0.74831109780259, -np.pi, 2.36695429734563, 1.73408746177857, 0.5 * np.pi),
+        (
+            (
+                -1.92081648667837,
+                2.05788676413409,
+                2.42886460298044,
+                2.42886460298044,
+                2.65450221625059,
+            ),
+            (
+                2.02086061587181,
+                1.95095211081817,
+                -2.58919917853553,
+                0.55239347507425,
+                0.38015578402328,
+            ),
+        ),
+    ),
+    (
+        (2.42365285981732, np.pi, np.pi, 0.0, 0.5 * np.pi),
+        (
+            (
+                -0.54144325514108,
+                2.11909833318043,
+                2.35336981387606,
+                2.35336981387606,
+                2.5932906472042,
+            ),
+        ),
+    ),
+]
+"""Configurations of a continuum, and regular ones of the same pose."""
+
+
+def test_solutions_beside_a_continuum_are_found_where_the_polynomial_vanishes(
+    tmp_path: Path,
+) -> None:
+    """Its values are rounding there, which has real roots too, and each leads to a solution."""
+    axes = ("0 0 1", "-1 0 0", "0 1 0", "1 0 0", "0 -1 0")
+    file = serial_urdf(
+        tmp_path / "five.urdf",
+        BESIDE_A_CONTINUUM,
+        axes=axes,
+        tip=("0.05 0.02 0.11", "0 0 0"),
+        limit=3.2,
+    )
+    module = derive(Request(file)).module
+    assert module.plan is not None and module.plan.parallel is not None
+    arm = import_text(emit_module(module), tmp_path)
+    for q, others in POSES_ON_IT:
+        rows = arm.solve(arm.forward(np.array(q))).q
+        for other in others:
+            apart = np.abs(np.remainder(rows - other + np.pi, 2.0 * np.pi) - np.pi).max(axis=1)
+            assert apart.min() < 1e-9

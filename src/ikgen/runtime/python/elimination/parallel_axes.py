@@ -39,6 +39,7 @@ __all__ = ["parallel_candidates"]
 
 _ACCEPT = 0.03  # imaginary part of a root (rad) up to which it is tried
 _SPLIT = 40.0  # times the root of the links' deviation: how far that may take halves of double roots apart
+_NOTHING = 1e-14  # of what products of their sizes allow: resultants below are rounding
 _CONE = np.array([-1.0, 1.0, 1.0])  # of (1, cos, sin)
 
 
@@ -166,6 +167,18 @@ def _resultant(kind: int, curves: Array, X: Array) -> Array:
     return np.asarray(2.0 * np.einsum("nmij,nmji->nm", G, G) - trace * trace, dtype=float)
 
 
+def _vanishes(kind: int, f: Array, curves: Array, X: Array) -> Flags:
+    """Where resultants f (N, m) of products X (N, m, 6, 3) are rounding at every node: on a continuum."""
+    line = np.sqrt((curves[:, 0] ** 2).sum(axis=-1))
+    size = np.sqrt((X * X).sum(axis=(-2, -1)).max(axis=1))
+    scale = (line * size) ** 2
+    if kind == PLAIN:
+        scale *= size**2
+    else:
+        scale *= scale * (curves[:, 1:] ** 2).sum(axis=(1, 2)) * size**4
+    return np.asarray(np.abs(f).max(axis=1) < _NOTHING * scale)
+
+
 def _fifth(kind: int, curves: Array, X: Array) -> Array:
     """(1, cos, sin) of theta_5 (k, 3) at roots of the resultant, of products X (k, 6, 3)."""
     first = (curves[:, :1] @ X)[:, 0]
@@ -226,9 +239,12 @@ def parallel_candidates(
     measures, curves = parallel_links(C), _curves(kind, C)
     links = links_of(measures)
     one, four = of_constants(_one, *C[:3], *C[4:]), of_constants(_four, *C[:4])
-    f = _resultant(kind, curves, _products(one, four, _circle(_TABLES[kind][0])[None]))
+    X = _products(one, four, _circle(_TABLES[kind][0])[None])
+    f = _resultant(kind, curves, X)
     doubtful = np.maximum(DOUBTFUL, _SPLIT * deviation(kind, links) ** 0.5)
     pose, t6, least, clear = _real_roots(kind, f, doubtful)
+    noise = _vanishes(kind, f, curves, X)
+    least[noise], clear[noise] = -1, False
     if not len(pose):
         return pose, np.zeros((0, 6)), least, clear
     one, four, six = rows_of(one, pose), rows_of(four, pose), _circle(t6)
@@ -241,4 +257,4 @@ def parallel_candidates(
     t5 = np.tile(np.arctan2(five[:, 2], five[:, 1]), each)
     side = links_of(rows_of(measures, pose)).side
     angles = parallel_turns([rows_of(c, pose) for c in C], side, n, t5, t6)
-    return pose, joint_values(angles, order, reverse), each * least, clear
+    return pose, joint_values(angles, order, reverse), np.where(noise, -1, each * least), clear
