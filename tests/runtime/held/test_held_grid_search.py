@@ -38,18 +38,18 @@ def axes(one: Any, middle: tuple[float, ...], limits: bool = True) -> tuple[list
 def test_all_pairs_of_evenly_spread_values_are_on_it() -> None:
     one = arm("RR", (-1.0, 0.5), (1.0, 2.0))
     (first, second), steps = axes(one, (-1.0, 0.5))
-    assert len(first) == len(second) == 64
-    np.testing.assert_allclose(first, np.linspace(-1.0, 1.0, 64), atol=1e-15)
-    np.testing.assert_allclose(second, np.linspace(0.5, 2.0, 64), atol=1e-15)
-    assert steps == pytest.approx((1.0 / 63.0, 0.75 / 63.0))
+    assert len(first) == len(second) == 100
+    np.testing.assert_allclose(first, np.linspace(-1.0, 1.0, 100), atol=1e-15)
+    np.testing.assert_allclose(second, np.linspace(0.5, 2.0, 100), atol=1e-15)
+    assert steps == pytest.approx((1.0 / 99.0, 0.75 / 99.0))
 
 
 def test_what_is_wanted_is_on_it_as_far_as_limits_allow() -> None:
     one = arm("RR", (-1.0, 0.5), (1.0, 2.0))
     (first, second), _ = axes(one, (0.123, 9.0))
     assert 0.123 in first and second[-1] == 2.0
-    others = np.sort(np.abs(first[:, None] - np.linspace(-1.0, 1.0, 64)).min(axis=1))
-    assert others[-2] < 1e-15 < others[-1] < 0.5 * 2.0 / 63.0
+    others = np.sort(np.abs(first[:, None] - np.linspace(-1.0, 1.0, 100)).min(axis=1))
+    assert others[-2] < 1e-15 < others[-1] < 0.5 * 2.0 / 99.0
 
 
 @pytest.mark.parametrize("ends", [(-inf, 0.5), (-0.5, inf), (-inf, inf)])
@@ -59,7 +59,7 @@ def test_a_turn_that_is_not_bounded_on_both_sides_goes_once_around(
     low, high = ends
     for limits in (True, False):
         (first, _), steps = axes(arm("RR", (low, 0.0), (high, 1.0)), (pi, 0.0), limits)
-        assert (first[0], first[-1]) == (-pi, pi) and steps[0] == pytest.approx(pi / 63.0)
+        assert (first[0], first[-1]) == (-pi, pi) and steps[0] == pytest.approx(pi / 99.0)
     (_, second), _ = axes(arm("RR", (low, 0.0), (high, 1.0)), (pi, pi), False)
     assert (second[0], second[-1]) == (-pi, pi)
 

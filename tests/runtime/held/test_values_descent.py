@@ -74,6 +74,20 @@ def test_a_limit_is_gone_along(monkeypatch: pytest.MonkeyPatch) -> None:
     np.testing.assert_allclose(rows[0], [0.2, 0.1], atol=1e-6)
 
 
+def test_a_limit_of_another_joint_is_gone_along(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It runs aslant of the values, and both lead outside of it, or to worse."""
+
+    def cost(q: Array) -> Array:
+        aside = q[..., 1] - 0.7 * q[..., 0]
+        return np.where(aside >= 0.0, (q[..., 0] - 0.3) ** 2 + (q[..., 1] + 0.2) ** 2, np.inf)
+
+    starts = [[-0.4, 0.0], [-0.35, -0.2449], [-0.1, 0.4]]
+    rows, best, _ = descended(monkeypatch, cost, starts)
+    foot = 0.16 / 1.49
+    np.testing.assert_allclose(best, cost(np.array([foot, 0.7 * foot])), rtol=1e-3)
+    assert (rows[:, 1] >= 0.7 * rows[:, 0]).all()
+
+
 def test_an_edge_that_has_no_slope_is_come_to(monkeypatch: pytest.MonkeyPatch) -> None:
     """As of smallest singular values where two of them are one."""
     rows, _, _ = descended(

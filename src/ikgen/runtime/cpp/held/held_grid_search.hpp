@@ -8,7 +8,7 @@ namespace ikgen_runtime {
 
 // Arm, Solver: as for ValuesDescent.
 template <class Arm, class Solver> struct HeldGridSearch {
-  static constexpr int kStarts = 32, kPoints = 4096;
+  static constexpr int kStarts = 32, kPoints = 10000;
   static constexpr double kEqual = 1e-9;  // costs that differ by less are as good
 
   // Values on an axis of the grid: as many as all axes together have room for.

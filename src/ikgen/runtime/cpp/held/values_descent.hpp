@@ -1,5 +1,7 @@
 // Descent to better rows of a pose by values of several held joints that go together: a compass search (Hooke, Jeeves 1961)
 // that looks at the minimum of the quadratic through its costs as well (Winfield 1973), which narrow valleys are followed by.
+// Where a sweep finds nothing the next one goes in other directions (Abramson et al. 2009): limits of joints that are not
+// held, and folds, run aslant of the values.
 #pragma once
 
 #include "held/row_preference.hpp"
@@ -9,12 +11,14 @@ namespace ikgen_runtime {
 
 // Arm: as for RowPreference and RowPair; Solver: as for PathStep.
 template <class Arm, class Solver> struct ValuesDescent {
-  static constexpr int kFree = Arm::kFree, kSweeps = 60;
+  static constexpr int kFree = Arm::kFree, kSweeps = 100;
   static constexpr double kLeastStep = 1e-10;  // rad or m
   static constexpr double kNear = 0.5;         // rad or m that a row may be from the one that a step began at
   static constexpr double kFarthest = 4.0;     // steps that the quadratic's minimum may be away
   static constexpr double kRoundOff = 1e-12;   // of how much it bends: less than that is not at all
   static constexpr double kShortest = 0.1;     // of a step, that it makes of the next one
+  static constexpr double kLonger = 2.0;       // times a step in directions that have led to something better
+  static constexpr double kGolden = 2.399963229728653;  // rad, of which no two multiples are a whole turn apart
   using Held = std::array<double, Arm::kFree>;
 
   // A row, of infinite cost outside the limits, and the squared distance from what is wanted.
@@ -48,8 +52,10 @@ template <class Arm, class Solver> struct ValuesDescent {
 
   // To better rows of the same branch, by steps that get shorter.
   void improve(Start& best, Held step) const noexcept {
+    const Held first = step;
+    int turns = 0;
     for (int n = 0; n < kSweeps && *std::max_element(step.begin(), step.end()) > kLeastStep && best.cost < kInfinity; ++n) {
-      Sweep sweep{best, best, step, {}, {}, true};
+      Sweep sweep{best, best, step, Turned(turns), {}, {}, true};
       for (int k = 0; k < kFree; ++k) {
         sweep.up[k] = sweep.take(*this, way(k, 1.0));
         sweep.down[k] = sweep.take(*this, way(k, -1.0));
@@ -64,7 +70,7 @@ template <class Arm, class Solver> struct ValuesDescent {
         H[a][a] = sweep.up[a] + sweep.down[a] - 2.0 * best.cost;
         lowest[a] = 0.5 * (sweep.down[a] - sweep.up[a]);
       }
-      double share = sweep.best.cost < best.cost ? 1.0 : 0.5;
+      double share = !(sweep.best.cost < best.cost) ? 0.5 : turns > 0 ? kLonger : 1.0;
       if (sweep.whole && minimum(H, lowest)) {
         Held there;
         double longest = 0.0;
@@ -76,22 +82,47 @@ template <class Arm, class Solver> struct ValuesDescent {
         sweep.take(*this, there);
         if (sweep.best.cost < before) share = std::min(std::max(longest, kShortest), 1.0);
       }
+      turns += sweep.best.cost < best.cost ? 0 : 1;
       best = sweep.best;
-      for (double& x : step) x *= share;
+      for (std::size_t k = 0; k < step.size(); ++k) step[k] = std::min(step[k] * share, first[k]);
     }
   }
 
  private:
+  // Directions, orthonormal, that differ from one of the turns to the next: the axes, then their reflections about
+  // directions spread evenly.
+  struct Turned {
+    Held mirror = {};
+    explicit Turned(int turns) noexcept {
+      double square = 0.0;
+      for (int k = 0; k < kFree && turns > 0; ++k) {
+        const double x = std::cos(kGolden * turns * (k + 1) + k);
+        mirror[static_cast<std::size_t>(k)] = x;
+        square += x * x;
+      }
+      for (double& x : mirror) x /= std::sqrt(std::max(square, 1e-300));
+    }
+    Held of(const Held& way) const noexcept {
+      Held out = way;
+      double dot = 0.0;
+      for (std::size_t k = 0; k < way.size(); ++k) dot += mirror[k] * way[k];
+      for (std::size_t k = 0; k < way.size(); ++k) out[k] -= 2.0 * dot * mirror[k];
+      return out;
+    }
+  };
+
   // Costs at steps around a row, and the best row there; `whole`: whether there was one inside the limits at each.
   struct Sweep {
     const Start middle;
     Start best;
     const Held& step;
+    const Turned turned;
     double up[kFree], down[kFree];
     bool whole;
 
     // That of the row of the same branch a way from it, in steps; infinite where there is none.
-    double take(const ValuesDescent& of, const Held& way) noexcept {
+    double take(const ValuesDescent& of, const Held& steps) noexcept {
+      const Held way = turned.of(steps);
       Held held;
       for (std::size_t k = 0; k < held.size(); ++k) {
         const auto joint = static_cast<std::size_t>(Arm::kFreeJoints[k]);

@@ -23,7 +23,7 @@ from ikgen.runtime.python.solving.pose_solving import solve_pose
 
 __all__ = ["search_grid"]
 
-_POINTS = 4096  # of the grid
+_POINTS = 10000  # of the grid
 _STARTS = 32
 _PART = 1024  # points that are solved at once
 _EQUAL = 1e-9  # costs that differ by less are as good

@@ -5,16 +5,18 @@ from __future__ import annotations
 import numpy as np
 
 from ikgen.runtime.python.arm.solved_arm import Arm
-from ikgen.runtime.python.arrays.array_types import Array
+from ikgen.runtime.python.arrays.array_types import Array, Index
 from ikgen.runtime.python.held.solution_search import LEAST_STEP, tried_rows
 from ikgen.runtime.python.rows.row_preference import Preference, preference_costs
 
 __all__ = ["descended_rows"]
 
-_SWEEPS = 60
+_SWEEPS = 100
 _FARTHEST = 4.0  # steps that the model's minimum may be away
 _ROUND_OFF = 1e-12  # of how much the model bends: less than that is none
 _SHORTEST = 0.1  # of a step, that it makes of the next one
+_LONGER = 2.0  # times a step in directions that have led to something better
+_GOLDEN = 2.399963229728653  # rad, of which no two multiples are a whole turn apart
 
 
 def descended_rows(
@@ -23,19 +25,23 @@ def descended_rows(
     """From rows (n, dof) at values (n, held) the best ones that a compass search (Hooke, Jeeves 1961) with
     first steps (n, held) finds on their branches, all three in place, and their costs (n,). Each sweep
     looks at the minimum of the quadratic through its costs as well (Winfield 1973), which narrow valleys
-    are followed by."""
+    are followed by. Where one finds nothing the next goes in other directions (Abramson et al. 2009):
+    limits of joints that are not held, and folds, run aslant of the values."""
     _, cost, _ = preference_costs(arm, preference, rows[:, None], limits)
-    best, ways = cost[:, 0], _ways(held.shape[1])
+    best, ways, first = cost[:, 0], _ways(held.shape[1]), step.copy()
+    turns = np.zeros(len(held), dtype=np.intp)
     for _ in range(_SWEEPS):
         going = np.flatnonzero(step.max(axis=1) > LEAST_STEP)
         if not len(going):
             break
         at, row, size = held[going], rows[going], step[going]
-        wanted = at + ways[:, None] * size
+        turned = _turned(held.shape[1], turns[going])
+        wanted = at + np.einsum("sc,ncd->snd", ways, turned) * size
         trials, found, costs = tried_rows(arm, T, preference, limits, at, row, wanted)
         unbounded = (trials == wanted).all(axis=(0, 2))
         far = np.where(unbounded[:, None], _model_minimum(best[going], costs, held.shape[1]), 0.0)
-        last = tried_rows(arm, T, preference, limits, at, row, (at + far * size)[None])
+        there = at + np.einsum("nc,ncd->nd", far, turned) * size
+        last = tried_rows(arm, T, preference, limits, at, row, there[None])
         trials, found, costs = (np.concatenate(both) for both in zip((trials, found, costs), last))
         which, each = costs.argmin(axis=0), np.arange(len(going))
         better = costs[which, each] < best[going]
@@ -43,9 +49,20 @@ def descended_rows(
         held[going[better]], rows[going[better]] = trials[some], found[some]
         best[going[better]] = costs[some]
         length = np.clip(np.abs(far).max(axis=1), _SHORTEST, 1.0)
-        share = np.where(better, np.where(which == len(ways), length, 1.0), 0.5)
-        step[going] *= share[:, None]
+        length = np.where(which == len(ways), length, np.where(turns[going] > 0, _LONGER, 1.0))
+        step[going] = np.minimum(size * np.where(better, length, 0.5)[:, None], first[going])
+        turns[going[~better]] += 1
     return rows, best
+
+
+def _turned(count: int, turns: Index) -> Array:
+    """Directions (n, count, count), orthonormal, that differ from one of the `turns` (n,) to the next: the
+    axes, then their reflections about directions spread evenly."""
+    k = np.arange(count)
+    v = np.cos(_GOLDEN * turns[:, None] * (k + 1) + k)
+    v /= np.sqrt((v * v).sum(axis=1, keepdims=True))
+    v[turns == 0] = 0.0
+    return np.asarray(np.eye(count) - 2.0 * v[:, :, None] * v[:, None, :])
 
 
 def _ways(count: int) -> Array:
