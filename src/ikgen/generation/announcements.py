@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from ikgen.generation.lost_freedom import lost_freedom
 from ikgen.generation.tip_on_axis import tip_on_axis
 from ikgen.model.counted import counted
 
@@ -17,11 +18,13 @@ _POSITION = 3  # freedoms
 
 def announcements(derivation: Derivation) -> tuple[str, ...]:
     """What was odd in the file, that the task is not the first that fits, that it asks more than the
-    arm can do, or than its name says, and that the tip lies on the last axis where the task tells of it."""
+    arm can do, or than its name says, that the tip lies on the last axis where the task tells of it, and
+    why joints of an arm with six at most are held."""
     told = (
         _passed_over(derivation),
         _over_constrained(derivation) or _tilting(derivation),
         tip_on_axis(derivation.reading.dh, derivation.task) if derivation.chosen else "",
+        lost_freedom(derivation.reading, ()) if derivation.held else "",
     )
     return (*derivation.reading.source.warnings, *filter(None, told))
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from ikgen.errors import UnsolvedChainError
 from ikgen.generation.advice import attempts
 from ikgen.generation.held_needs import check_task
+from ikgen.generation.lost_freedom import lost_freedom
 from ikgen.generation.progress import Progress, silent
 from ikgen.generation.read import has_arm_angle, read, read_tree
 
@@ -70,9 +71,10 @@ class Inspection:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What was odd in the file."""
+        """What was odd in the file, and that joints are not independent."""
         if self.reading is not None:
-            return self.reading.source.warnings
+            lost = lost_freedom(self.reading, self.reading.dh.free)
+            return (*self.reading.source.warnings, *filter(None, [lost]))
         return self.tree.source.warnings if self.tree is not None else ()
 
 

@@ -17,7 +17,7 @@ _SLIDE = (
     "is eliminated like them."
 )
 _BOTH = (
-    "With the right angles of this arm these twelve equations have the same rank at every angle. "
+    "Of this arm the twelve equations have the same rank at every angle, at solutions as elsewhere. "
     "Multiplied by the fifth angle's exponential as well they are 24 in sixteen monomials, and lose "
     "rank at solutions alone. Times their pseudo-inverse at an angle where they have full rank they "
     "are a square matrix with 32 roots; those at which the 24 keep their rank are left out."
