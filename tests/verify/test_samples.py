@@ -229,7 +229,10 @@ def test_ends_that_are_regular_are_no_continuum(
     def told(end: Array, *, reached: bool = True, apart: bool = True) -> bool:
         count = iter(range(1, 9))
 
-        def converge(_: ArmUnderTest, q: Array, aims: Array) -> tuple[Array, NDArray[np.bool_]]:
+        def converge(
+            _: ArmUnderTest, q: Array, aims: Array, *, enough: Array
+        ) -> tuple[Array, NDArray[np.bool_]]:
+            assert enough == pytest.approx([1e-13])
             ends = end[None] + (0.1 * next(count) * np.eye(6)[3] if apart else 0.0)
             return ends, np.full(len(q), reached)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -48,19 +49,28 @@ def three_joints(lengths: tuple[float, ...], folder: Path) -> ArmUnderTest:
     return under_test(oracle_from_dh(read_dh_table(table)[1]), "position")
 
 
-def two_slides(folder: Path) -> ArmUnderTest:
-    """Two slides whose directions an angle between them tells apart, for the whole pose."""
-    rows = (
-        ("prismatic", 0.0, 0.0, 0.0), ("revolute", 0.5, 0.0, 0.0), ("prismatic", -0.5, 0.906, 0.5),
-        ("revolute", -0.5, 0.549, 0.0), ("prismatic", -0.5, 0.0, -0.5), ("revolute", -0.5, 0.0, 0.0),
-    )  # fmt: skip
+def of_rows(folder: Path, rows: Sequence[tuple[str, float, float, float, float]]) -> ArmUnderTest:
+    """The arm of kind, alpha, a, theta (turns of 180 degrees) and d of each row, for the whole pose."""
     joints = (
-        f'[[joints]]\ntype = "{kind}"\nalpha = "{alpha}*pi"\na = {a}\nd = 0\ntheta = "{theta}*pi"\n'
-        for kind, alpha, a, theta in rows
+        f'[[joints]]\ntype = "{kind}"\nalpha = "{alpha}*pi"\na = {a}\ntheta = "{theta}*pi"\nd = {d}\n'
+        for kind, alpha, a, theta, d in rows
     )
-    table = folder / "slides.toml"
+    table = folder / "rows.toml"
     table.write_text('name = "arm"\nconvention = "modified"\n' + "".join(joints), encoding="utf-8")
     return under_test(oracle_from_dh(read_dh_table(table)[1]), "pose")
+
+
+R, P = "revolute", "prismatic"
+TWO_SLIDES = (
+    (P, 0.0, 0.0, 0.0, 0.0), (R, 0.5, 0.0, 0.0, 0.0), (P, -0.5, 0.906, 0.5, 0.0),
+    (R, -0.5, 0.549, 0.0, 0.0), (P, -0.5, 0.0, -0.5, 0.0), (R, -0.5, 0.0, 0.0, 0.0),
+)  # fmt: skip
+"""Slides whose directions an angle between them tells apart."""
+THREE_AND_A_SLIDE = (
+    (R, 0.0, 0.0, 0.0, 0.0), (R, 0.5, 0.0, 0.0, 0.0), (R, 0.5, 0.0, 0.0, 0.0),
+    (R, 0.0, 0.9088601291442826, 0.0, 0.0), (R, 0.5, 0.0, 0.0, 0.8282191617670496),
+    (P, 0.5, 0.5005600331837693, 0.0, 0.0),
+)  # fmt: skip
 
 
 def under_test(oracle: Oracle, task: str) -> ArmUnderTest:
@@ -112,8 +122,19 @@ def test_a_stretched_elbow_is_no_continuum() -> None:
 def test_slides_far_out_whose_directions_are_nearly_parallel_are_no_continuum(
     tmp_path: Path,
 ) -> None:
-    arm = two_slides(tmp_path)
+    arm = of_rows(tmp_path, TWO_SLIDES)
     wrist = (-3.1417317533, -8.0982153e-5, 1.5708010291)
     q = np.array([[1e4, aside, -1e4, *wrist] for aside in (-1.7e-4, 0.0)])
     assert (arm.sigma(q) < 1e-9).all()
+    assert on_continuum(arm, q, arm.oracle.forward(q)).tolist() == [False, True]
+
+
+def test_an_isolated_row_that_is_nearly_singular_is_no_continuum(tmp_path: Path) -> None:
+    """Beside it poses are as near as the singular value times the way, which is not rounding."""
+    arm = of_rows(tmp_path, THREE_AND_A_SLIDE)
+    beside = -4.268089212392862, -3.1515147549873475, 2.696350427460675, 1.5709195369737774
+    row = np.array([[*beside, 2.308266611278576, -0.0050883255596016275]])
+    on_it = np.array([[-1.0, 0.0, 0.4, 0.3, 0.2, 0.1]])
+    assert 1e-11 < arm.sigma(row)[0] < 1e-10 and arm.sigma(on_it)[0] < 1e-14
+    q = np.concatenate([row, on_it])
     assert on_continuum(arm, q, arm.oracle.forward(q)).tolist() == [False, True]

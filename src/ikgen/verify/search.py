@@ -42,15 +42,19 @@ def _step(arm: ArmUnderTest, q: Array, targets: Array) -> tuple[Array, Array]:
 
 
 def converge(
-    arm: ArmUnderTest, q: Array, targets: Array, iterations: int = 40
+    arm: ArmUnderTest,
+    q: Array,
+    targets: Array,
+    iterations: int = 40,
+    enough: float | Array = CONVERGED,
 ) -> tuple[Array, NDArray[np.bool_]]:
     """Run Newton from each q (N, dof) to its target (N, 4, 4), or its aim; free joints stay. Returns
-    the end points and which of them reach the target."""
-    q, done = q.copy(), np.zeros(len(q), dtype=bool)
+    the end points and which of them reach the target, to a residual that is `enough`, one or (N,)."""
+    q, done, bound = q.copy(), np.zeros(len(q), dtype=bool), np.broadcast_to(enough, len(q))
     alive = np.arange(len(q))
     for _ in range(iterations):
         residual, following = _step(arm, q[alive], targets[alive])
-        reached = residual < CONVERGED
+        reached = residual < bound[alive]
         done[alive[reached]] = True
         q[alive[~reached]] = following[~reached]
         alive = alive[~reached]

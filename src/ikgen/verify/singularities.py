@@ -22,6 +22,10 @@ STEPS_ALONG = (0.2, 0.05, 0.01)
 """Steps (rad, or lengths of the arm) along the null direction, longest first. A long step may end at
 another isolated solution; a short one is little off the noise of where an isolated one is."""
 
+_ON_IT = 1e-13
+"""Scaled residual of what is on a continuum: rounding, which slides that are far out make larger. An
+isolated solution that is nearly singular leaves its singular value times the step."""
+
 _PROBE = 1e-6  # rad or m: step of the forward difference
 
 
@@ -81,9 +85,10 @@ def on_continuum(arm: ArmUnderTest, q: Array, targets: Array) -> NDArray[np.bool
     step[:, active] = null * np.where(arm.revolute[active], 1.0, arm.length) * farther[:, None]
     flags[candidates] = True
     aims = arm.aims(q[candidates], targets[candidates])
+    rounding = _ON_IT * size_of.max(axis=1)
     passed = [q[candidates]]  # where the steps before came from and went
     for size in STEPS_ALONG:
-        ends, reached = converge(arm, q[candidates] + size * step, aims)
+        ends, reached = converge(arm, q[candidates] + size * step, aims, enough=rounding)
         away = [np.max(np.abs(ends - one), axis=1, initial=0.0) > size / 4 for one in passed]
         flags[candidates] &= reached & np.all(away, axis=0) & (arm.sigma(ends) < 1e-5)
         passed.append(ends)
