@@ -334,7 +334,7 @@ HARMLESS = (
     ),
     HarmlessChange(
         "verify/search.py",
-        "reached = residual < CONVERGED",
+        "reached = residual < bound[alive]",
         "<", "<=", _EQUAL,
     ),
     HarmlessChange(
