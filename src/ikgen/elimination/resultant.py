@@ -14,13 +14,8 @@ from itertools import product
 import numpy as np
 
 from ikgen.model.joint_tree import Matrix
-from ikgen.runtime.python.elimination.loop_equations import (
-    XS,
-    YS,
-    ZS,
-    loop_constants,
-    loop_equations,
-)
+from ikgen.runtime.python.elimination.hidden_angle import loop_pencil
+from ikgen.runtime.python.elimination.loop_equations import loop_constants, loop_equations
 
 __all__ = ["RESULTANTS", "Resultant", "root_shifts"]
 
@@ -66,10 +61,7 @@ def _pencil(frames: Matrix, poses: Matrix, plan: Resultant) -> tuple[list[int], 
     their terms in 1, cos and sin of the hidden angle."""
     order, C = loop_constants([*frames[:, None]], poses, *plan)
     E, left, _ = loop_equations(C)
-    plain = E[..., ZS] @ left[:, ZS]
-    plain[..., 0] += E[..., 14]
-    x, y, X, Y = E[..., XS], E[..., YS], left[:, XS], left[:, YS]
-    return order, np.array([plain, x @ X + y @ Y, y @ X - x @ Y])
+    return order, np.array(loop_pencil(E, left))
 
 
 def _resultant(pencil: Matrix, angles: Matrix) -> Matrix:

@@ -94,6 +94,18 @@ inline void add_product(double factor, const Mat<AR, AC>& A, Index ra, Index ca,
     }
 }
 
+// -J (1 + K) of the upper and lower half of K, J a quarter turn of the halves.
+template <Index N>
+inline Mat<2 * N, 2 * N> quarter_turned(const Mat<N, 2 * N>& top, const Mat<N, 2 * N>& bottom) noexcept {
+  Mat<2 * N, 2 * N> out;
+  for (Index i = 0; i < N; ++i)
+    for (Index j = 0; j < 2 * N; ++j) {
+      out(i, j) = bottom(i, j) + (j == N + i ? 1.0 : 0.0);
+      out(N + i, j) = -(top(i, j) + (j == i ? 1.0 : 0.0));
+    }
+  return out;
+}
+
 // Of the eigenproblem's entries, or of the largest pivot of M_pi over its least: of a root's digits half are rounding, or
 // nearly all.
 inline constexpr double kNoRank = 1e9, kNoPivot = 1e11;
@@ -188,15 +200,7 @@ inline Spectrum find_roots(const Mat<6, 16>& E, const Mat<14, 12>& left, const R
   Mat<8, 16> top{}, bottom{};
   add_product<12>(2.0, lift(x), 0, 0, N, 0, top);
   add_product<12>(2.0, lift(y), 0, 0, N, 0, bottom);
-  Mat<16, 16> A;
-  for (Index i = 0; i < 8; ++i) {
-    top(i, i) += 1.0;
-    bottom(i, 8 + i) += 1.0;
-    for (Index j = 0; j < 16; ++j) {
-      A(i, j) = bottom(i, j);
-      A(8 + i, j) = -top(i, j);
-    }
-  }
+  Mat<16, 16> A = quarter_turned(top, bottom);
   double largest = 0.0;
   for (const double entry : A.v) largest = std::max(largest, std::abs(entry));
   std::array<Complex, 16> t;

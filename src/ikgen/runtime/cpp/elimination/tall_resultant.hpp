@@ -103,15 +103,7 @@ inline bool find_tall_roots(const Mat<6, 16>& E, const Mat<14, 12>& left, const 
   Mat<16, 32> top{}, bottom{};
   add_product<16>(2.0, lift_both(x), 0, 0, solved, 0, top);
   add_product<16>(2.0, lift_both(y), 0, 0, solved, 0, bottom);
-  Mat<32, 32> A;
-  for (Index i = 0; i < 16; ++i) {
-    top(i, i) += 1.0;
-    bottom(i, 16 + i) += 1.0;
-    for (Index j = 0; j < 32; ++j) {
-      A(i, j) = bottom(i, j);
-      A(16 + i, j) = -top(i, j);
-    }
-  }
+  Mat<32, 32> A = quarter_turned(top, bottom);
   return eigenvalues(A, out.t);
 }
 

@@ -19,8 +19,9 @@ from ikgen.runtime.python.elimination.hidden_angle import (
     Resultant,
     all_clear,
     angles_off,
+    loop_pencil,
 )
-from ikgen.runtime.python.elimination.loop_equations import XS, YS, ZS
+from ikgen.runtime.python.elimination.loop_equations import XS, YS
 from ikgen.runtime.python.rows.solution_rows import first_of_equals, rows_of
 
 __all__ = ["both_angles"]
@@ -88,11 +89,8 @@ def _lift(A: Array) -> Array:
 
 def _resultant(E: Array, left: Array) -> Resultant:
     """M0 (N, 24, 16), Mc, Ms with `M(theta_3) = M0 + Mc cos + Ms sin` without full rank at solutions."""
-    F0 = E[..., ZS] @ left[:, ZS]
-    F0[..., 0] += E[..., 14]
-    x, y = E[..., XS], E[..., YS]
-    X, Y = left[:, XS], left[:, YS]
-    return _lift(F0), _lift(x @ X + y @ Y), _lift(y @ X - x @ Y)
+    F0, Fc, Fs = loop_pencil(E, left)
+    return _lift(F0), _lift(Fc), _lift(Fs)
 
 
 def _at(M: Resultant, pose: Index, angle: Array) -> Array:

@@ -23,6 +23,7 @@ __all__ = [
     "angles_off",
     "hidden_angles",
     "lift",
+    "loop_pencil",
     "loop_resultant",
     "real_angles",
     "solved",
@@ -58,11 +59,17 @@ def lift(A: Array) -> Array:
 
 def loop_resultant(E: Array, left: Array) -> Resultant:
     """M0 (N, 12, 12), Mc, Ms with `M(theta_3) = M0 + Mc cos + Ms sin` singular at solutions."""
+    F0, Fc, Fs = loop_pencil(E, left)
+    return lift(F0), lift(Fc), lift(Fs)
+
+
+def loop_pencil(E: Array, left: Array) -> Resultant:
+    """The six equations' terms (N, 6, 9) in 1, cos and sin of theta_3."""
     F0 = E[..., ZS] @ left[:, ZS]
     F0[..., 0] += E[..., 14]
     x, y = E[..., XS], E[..., YS]
     X, Y = left[:, XS], left[:, YS]
-    return lift(F0), lift(x @ X + y @ Y), lift(y @ X - x @ Y)
+    return F0, x @ X + y @ Y, y @ X - x @ Y
 
 
 def hidden_angles(
