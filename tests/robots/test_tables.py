@@ -89,6 +89,12 @@ def test_claims_as_many_solutions_as_some_pose_has(name: str, tmp_path: Path) ->
     assert most // 2 <= found < most if EXPECTED[name].get("bound") else found == most
 
 
+def test_no_branch_is_claimed_that_another_joint_tells() -> None:
+    """Of the first angle's two the third angle always rules one out, which the rules alone do not see."""
+    table = HERE / "tables" / "ICP5p5_A21.toml"
+    assert derive(Request(table, task="pose")).module.max_solutions == 1
+
+
 @pytest.mark.parametrize("name", SOLVED, scope="module")
 def test_robot_is_solved(name: str, tmp_path: Path) -> None:
     table = HERE / "tables" / f"{name}.toml"

@@ -25,7 +25,8 @@ class Recording:
 
     def __init__(self) -> None:
         self.told: list[tuple[tuple[str, ...], str, str, str]] = []
-        self.equations, self.knowledge = ["old"], None
+        self.collected = self.equations = ["old"]
+        self.knowledge = None
 
     def record(self, path: tuple[str, ...], kind: str, outcome: str, detail: str, _: float) -> None:
         self.told.append((path, kind, outcome, detail))

@@ -12,6 +12,7 @@ from ikgen.equations.knowledge import PolynomialEquation, Variable
 __all__ = [
     "AngleSplit",
     "constant_ratio",
+    "contains",
     "harmonics",
     "only_known",
     "powers",
@@ -52,6 +53,14 @@ def _parallel(combination: AngleCombination, unit: AngleCombination) -> bool:
     factor = max(map(abs, combination))
     unit_factor = max(map(abs, unit))
     return all(k * unit_factor == u * factor for k, u in zip(combination, unit, strict=True))
+
+
+def contains(monomial: Monomial, unknown: Variable) -> bool:
+    """Whether an unknown, or a multiple of its angle, occurs in a monomial."""
+    trigs, slides = monomial
+    if unknown.kind == "angle":
+        return any(_parallel(combination, unknown.combination) for combination, _ in trigs)
+    return any(joint == unknown.joint for joint, _ in slides)
 
 
 def harmonics(

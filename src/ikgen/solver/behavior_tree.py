@@ -5,6 +5,7 @@
     └── Selector
         ├── Sequence: rules            OR over the leaves, then the ranker if a good candidate was found
         ├── Sequence: square and add   the transform, then the same
+        ├── Sequence: substitution     another transform, then the same
         └── take what there is         the ranker, whatever the candidates
 
 Nodes read and write a `Session`; this module is the only one that knows py_trees. Its `Parallel` fails
@@ -28,7 +29,7 @@ from ikgen.errors import PlugInError
 from ikgen.plugins import plug_ins
 from ikgen.solver.leaves import Leaf
 from ikgen.solver.session import Session
-from ikgen.solver.transforms import square_and_add
+from ikgen.solver.transforms import square_and_add, substitution
 
 __all__ = [
     "TREE",
@@ -106,7 +107,7 @@ def leaf_node(leaf: Leaf, session: Session) -> Action:
 
 def _transform(transform: Transform) -> Callable[[Session], tuple[bool, str]]:
     def act(session: Session) -> tuple[bool, str]:
-        made = transform(session.equations, session.knowledge)
+        made = transform(session.collected, session.knowledge)
         session.new_equations(made)
         return bool(made), f"{len(made)} new equations"
 
@@ -138,10 +139,12 @@ def build_tree(session: Session, leaves: Sequence[Leaf]) -> Behaviour:
     root = py_trees.composites.Sequence("solve one unknown", memory=False)
     ways = py_trees.composites.Selector("ways", memory=False)
     square = Action("square and add", session, _transform(square_and_add.apply))
+    substitute = Action("substitution", session, _transform(substitution.apply))
     ways.add_children(
         [
             _attempt("rules", session, leaves, []),
             _attempt("after square and add", session, leaves, [square]),
+            _attempt("after substitution", session, leaves, [substitute]),
             Action("take what there is", session, partial(choose, anything=True)),
         ]
     )

@@ -44,9 +44,10 @@ class Tick:
 
 @dataclass
 class Session:
-    """State of a session. `equations` are those of the current round with few unknowns; unknowns that are
-    `passed_over` are not to be the first that is solved with branches; `among` are the labels of the only
-    equations to look at (None: all)."""
+    """State of a session. `collected` are the equations of the current round with few unknowns, `equations`
+    those that leaves look at: the same, or what a transform made of them; unknowns that are `passed_over`
+    are not to be the first that is solved with branches; `among` are the labels of the only equations to
+    collect (None: all)."""
 
     system: EquationSet
     probes: Probes
@@ -55,6 +56,7 @@ class Session:
     passed_over: Collection[Variable] = ()
     among: Collection[str] | None = None
     round: int = 0
+    collected: list[PolynomialEquation] = field(default_factory=list)
     equations: list[PolynomialEquation] = field(default_factory=list)
     candidates: list[Candidate] = field(default_factory=list)
     steps: list[Step] = field(default_factory=list)
@@ -119,10 +121,10 @@ class Session:
             p = k.polynomial_equation(e)
             if p.unknowns:
                 out.append(p)
-        self.equations = out
+        self.collected = self.equations = out
 
     def new_equations(self, made: list[PolynomialEquation]) -> None:
-        """Equations that a transform made, in place of the round's own."""
+        """Equations that a transform made, in place of those that were looked at."""
         self.equations = made
 
     @property
