@@ -80,7 +80,7 @@ def arm(name: str, folder: Path) -> tuple[Request, NDArray[np.float64]]:
 
 
 @pytest.mark.parametrize(
-    ("name", "language"), in_languages(["elbows", "slide", "rounded"], ["slide"])
+    ("name", "language"), in_languages(["elbows", "slide", "rounded"], [])
 )
 def test_none_is_without_a_row(name: str, language: str, tmp_path: Path) -> None:
     request, q = arm(name, tmp_path)

@@ -44,7 +44,7 @@ TOOLS = {
 """How the tool is turned; the axis that is asked for, and the one that is taken."""
 
 
-@pytest.mark.parametrize(("tool", "language"), in_languages(TOOLS, ["y, rounded"]))
+@pytest.mark.parametrize(("tool", "language"), in_languages(TOOLS, []))
 def test_the_heading_of_a_level_axis(tmp_path: Path, tool: str, language: str) -> None:
     rpy, asked, axis = TOOLS[tool]
     request = Request(scara(tmp_path, rpy), tool_axis=asked)

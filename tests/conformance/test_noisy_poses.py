@@ -35,7 +35,7 @@ ARMS = {
     "rotation": Request(TABLES / "Wrist.toml", task="rotation"),
 }
 NOISES = ("float32", "1e-6")
-COMPILED = ("spherical wrist", "held", "direction", "yaw")
+COMPILED = ("held", "yaw")
 """Arms whose header is compiled in every run."""
 
 

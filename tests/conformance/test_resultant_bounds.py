@@ -39,7 +39,7 @@ FOLDS = np.array(  # where two solutions are one, whatever the first joint and t
 def test_they_are_found_where_products_are_fused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("ikgen.verify.runners.cpp_header.LIGHT", ("-O2", "-march=native"))
+    monkeypatch.setattr("ikgen.verify.runners.cpp_header.LIGHT", ("-O1", "-march=native"))
     path = serial_urdf(tmp_path / "forearm.urdf", ORIGINS, axes=AXES, limit=3.1)
     arm, header = emitted_in_both(Request(path, name="forearm"), tmp_path)
     random = np.random.default_rng(1)

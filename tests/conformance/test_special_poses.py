@@ -231,7 +231,7 @@ def test_roots_that_meet_leave_no_pose_without_rows(tmp_path: Path) -> None:
     assert len(found) and found.singular[apart.argmin()] and apart.min() < 1e-6
 
 
-@pytest.mark.parametrize(("kind", "language"), in_languages(BESIDE, ["crowded"]))
+@pytest.mark.parametrize(("kind", "language"), in_languages(BESIDE, []))
 def test_solutions_beside_a_continuum_are_found(kind: str, language: str, tmp_path: Path) -> None:
     rows, q = BESIDE[kind]
     python, runner = solvers(rows, tmp_path, language)

@@ -189,7 +189,7 @@ def test_lanes_find_what_one_by_one_finds(robot: str, tmp_path: Path) -> None:
     module = rounded(WRIST) if robot == "wrist" else published_module(robot)
     q = np.random.default_rng(4).uniform(-3, 3, (340, 6))
     q[300:, 4] = 1e-7  # beside the wrist's singularity all are handed on
-    found = answers(module, q, tmp_path, "-O2", "-march=native")
+    found = answers(module, q, tmp_path, "-march=native")
     assert all(rough > 0 for _, rough in found[300:])
     q, found = q[:300], found[:300]
     for at, ((rows, batch, careful), _) in zip(q, found, strict=True):
