@@ -21,7 +21,7 @@ def arm(turns: list[bool], size: float = 2.0) -> Any:
 @pytest.mark.parametrize("dof", [1, 3, 6, 7])
 def test_they_are_multiples_of_powers_of_a_root(dof: int) -> None:
     low, high = np.linspace(-1.0, 0.5, dof), np.linspace(-0.5, 2.0, dof)
-    starts = _even_starts(arm([True] * dof), low, high)
+    starts = _even_starts(arm([True] * dof), low, high, 256)
     roots = np.roots([1.0, *[0.0] * (dof - 1), -1.0, -1.0])
     root = float(roots[(np.abs(roots.imag) < 1e-9) & (roots.real > 1.0)].real[0])
     part = (starts - low) / (high - low)
@@ -51,7 +51,7 @@ def test_of_wide_limits_the_part_around_nothing_is_filled(
     low: float, high: float, turns: bool, window: tuple[float, float]
 ) -> None:
     """A turn of what turns, the arm's size to either side of what slides."""
-    starts = _even_starts(arm([turns]), np.array([low]), np.array([high]))[:, 0]
+    starts = _even_starts(arm([turns]), np.array([low]), np.array([high]), 256)[:, 0]
     width = window[1] - window[0]
     assert window[0] <= starts.min() < window[0] + 0.02 * width
     assert window[1] >= starts.max() > window[1] - 0.02 * width

@@ -9,6 +9,7 @@ namespace ikgen_runtime {
 // Points are told apart by their share of the way along the chord between the two ends (Keller 1977: a curve goes on
 // smoothly past a fold by another parameter than the held value). Arm: as for HeldSweep.
 template <class Arm> struct BranchArc {
+  static constexpr double kArrived = 1e-9;  // error of rows on it
   using Curve = BranchCurve<Arm>;
   static constexpr MovingJoints<Arm> kJoints{};
   static constexpr int kMoving = Curve::kMoving, kVariables = kMoving + 1;
@@ -71,7 +72,7 @@ template <class Arm> struct BranchArc {
   }
 
  private:
-  static constexpr double kEnough = 1e-10, kTouching = 1e-6, kFar = 1.0, kArrived = 1e-9, kNearly = 3e-6;
+  static constexpr double kEnough = 1e-10, kTouching = 1e-6, kFar = 1.0, kNearly = 3e-6;
   static constexpr int kSteps = 10, kMost = 40;
   Vector chord;
   double length = 0.0;

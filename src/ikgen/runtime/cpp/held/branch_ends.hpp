@@ -45,12 +45,32 @@ template <class Arm> struct BranchEnd {
   void find(const HeldSweep<Arm>& sweep, LastEnd<Arm>& last) noexcept {
     if constexpr (!Sample::kMarginsTell)
       if (goes && follow(sweep)) return;
+    const BranchEnd before = *this;
     if (last.settled && ends_at(last.inside)) return;
     if (last.known && (found(last.inside, last.outside) || found(last.outside, last.inside))) return;
+    narrow_down(sweep, last, at_fold);
+    if (!Sample::kMarginsTell || !at_fold || takes(sweep.pose)) return;
+    *this = before;
+    halves = true;
+    narrow_down(sweep, last, false);
+    last.known = last.settled = false;
+  }
+
+ private:
+  static constexpr double kClose = 1e-8;  // error of a row that has lost digits by a fold alone
+  bool stays;          // in its lane, however near others come
+  bool halves = false;  // steps are halves, whatever is expected
+  bool goes = false;  // to the row `there` at the value `then`
+  double there[Arm::kDof], then;
+  int count = 0;
+  double at[kKnown + 1], value[kKnown + 1];  // the nearest last
+
+  // Looks for it; `coarse`: by margins, where rows may be left as the closed form has them.
+  void narrow_down(const HeldSweep<Arm>& sweep, LastEnd<Arm>& last, bool coarse) noexcept {
     last.inside.held = last.outside.held = kInfinity;
     last.settled = false;
     for (int step = 0; step < kSteps && std::abs(outer - inner) > kEnough; ++step) {
-      const Sample s = sweep.at(trial(step), at_fold);
+      const Sample s = sweep.at(trial(step), coarse && at_fold);
       const int row = row_in(s);
       const bool seen = row >= 0 && s.real[row] && s.distance(row, q) < 1.0, good = seen && s.off[row] <= 0.0;
       const double remote = good ? outer : inner;
@@ -75,12 +95,15 @@ template <class Arm> struct BranchEnd {
     last.known = last.inside.held == inner && last.outside.held == outer;
   }
 
- private:
-  bool stays;         // in its lane, however near others come
-  bool goes = false;  // to the row `there` at the value `then`
-  double there[Arm::kDof], then;
-  int count = 0;
-  double at[kKnown + 1], value[kKnown + 1];  // the nearest last
+  // Whether the row at the end takes the pose. Where a divisor of the closed form is 0 at each value it may be that margins
+  // tell nothing.
+  bool takes(const Eigen::Isometry3d& pose) const noexcept {
+    const HeldAim<Arm> aim(pose, {inner});
+    if (PoseError<Arm>(q, aim).largest() < kClose) return true;
+    double row[Arm::kDof];
+    std::copy_n(q, Arm::kDof, row);
+    return NewtonRefinement<Arm>::refine(row, aim);
+  }
 
   void take_row(const Sample& s, int row) noexcept {
     s.row(row, q);
@@ -211,7 +234,7 @@ template <class Arm> struct BranchEnd {
   double trial(int step) const noexcept {
     const double width = outer - inner, least = 0.4 * kEnough / std::abs(width);
     double share = 0.5;
-    for (int first = 0; first < count - 1 && step % kHalve != kHalve - 1; ++first) {
+    for (int first = 0; first < count - 1 && step % kHalve != kHalve - 1 && !halves; ++first) {
       const double end = interpolated(first), part = (end - inner) / width;
       if (!(part > 0.0 && part < 1.0)) continue;
       share = part - kShare * kEnough / std::abs(width);

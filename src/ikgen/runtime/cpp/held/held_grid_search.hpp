@@ -1,6 +1,7 @@
 // Rows that are better than those beside them on a grid of several held joints' values, each made better by steps of these.
 #pragma once
 
+#include "held/lone_value.hpp"
 #include "held/slide_range.hpp"
 #include "held/values_descent.hpp"
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "held/held_descent.hpp"
+#include "held/lone_value.hpp"
 #include "held/sample_costs.hpp"
 #include "held/self_motion.hpp"
 
@@ -130,10 +131,17 @@ template <class Arm> struct HeldSearch {
     }
   }
 
+  // Whether a row takes the pose: an end's may not, where margins tell nothing. Joints that are outside the limits by a
+  // hair have been put on them.
+  bool takes(const Point& p) const noexcept {
+    constexpr double enough = BranchArc<Arm>::kArrived + 2.0 * Arm::Policy::kLimitTolerance;
+    return PoseError<Arm>(p.q, HeldAim<Arm>(descent.sweep.pose, {p.at})).largest() <= enough;
+  }
+
   // Takes a row that is inside, of an interval's the best.
   void insert(const Point& p, int interval) noexcept {
     int at = 0, last = 0;
-    if (!(p.cost < kInfinity)) return;
+    if (!(p.cost < kInfinity) || !takes(p)) return;
     while (last < out.count && owner[last] != interval) ++last;
     if (last < out.count && best[last] <= p.cost) return;
     while (at < out.count && best[at] <= p.cost) ++at;

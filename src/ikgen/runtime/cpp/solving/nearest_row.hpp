@@ -71,13 +71,13 @@ template <class Arm> struct NearestRow {
   static constexpr double kStanding = 1e-6;   // over what is least and not 0: a step that gains less ends it
 
   // t: the pose's matrix, columns first; inside: whether limits hold; enough: as for descend; first: steps of each start;
-  // flat: whether they go on along directions in which the pose hardly moves.
-  [[gnu::cold, gnu::noinline]] static void find(const double* t, const Options& options, bool inside, double enough,
-                                                int first, double* best, bool flat = false) noexcept {
+  // flat: whether they go on along directions in which the pose hardly moves. What is least there.
+  [[gnu::cold, gnu::noinline]] static double find(const double* t, const Options& options, bool inside, double enough,
+                                                  int first, double* best, bool flat = false, int starts = kStarts) noexcept {
     double rows[kFollowed][Arm::kDof], costs[kFollowed], q[Arm::kDof], root = 2.0;
     for (int k = 0; k < 40; ++k) root = std::pow(1.0 + root, 1.0 / (Arm::kDof + 1));
     int kept = 0;
-    for (int i = -1; i < kStarts; ++i) {
+    for (int i = -1; i < starts; ++i) {
       if (i >= 0) start(i, root, options, inside, q);
       for (int j = 0; i < 0 && j < Arm::kDof; ++j) {
         double low, high;
@@ -103,6 +103,7 @@ template <class Arm> struct NearestRow {
       take_better(rows[k], flat ? descend(t, inside, enough, rows[k], kSteps, kFinest) : cost, best, least);
       if (flat) take_better(q, descend(t, inside, enough, q, kSteps, kFinest), best, least);
     }
+    return least;
   }
 
   // Puts joints between their limits, on the turn that is nearest to the middle, where steps may begin.

@@ -12,6 +12,7 @@ from ikgen.runtime.python.arm.solved_arm import Arm
 from ikgen.runtime.python.arrays.array_types import Array, Flags, Index
 from ikgen.runtime.python.arrays.row_blocks import in_blocks
 from ikgen.runtime.python.held.held_joint import pose_lines
+from ikgen.runtime.python.held.lone_value import with_lone_row
 from ikgen.runtime.python.held.slide_range import slide_range
 from ikgen.runtime.python.held.solution_search import NEAR, solutions_of, with_seeds_row
 from ikgen.runtime.python.held.values_descent import descended_rows
@@ -40,7 +41,8 @@ def search_grid(
     if T is None:
         return solve_pose(arm, pose, None, None, limits)  # which says why it is none
     found = _best_rows(arm, T, preference, limits)
-    return with_seeds_row(arm, T, seed, preference, limits, found)
+    found = with_seeds_row(arm, T, seed, preference, limits, found)
+    return with_lone_row(arm, T, preference, limits, found)
 
 
 def _best_rows(arm: Arm, T: Array, preference: Preference, limits: bool) -> Solutions:

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from ikgen.runtime.python.arrays.array_types import Array, Index
 from ikgen.runtime.python.held.branch_tracks import Tracks, tracked
 from ikgen.runtime.python.held.held_joint import HeldJoint, held_range, pose_lines
+from ikgen.runtime.python.held.lone_value import with_lone_row
 from ikgen.runtime.python.held.self_motion import Piece, pieces_of
 from ikgen.runtime.python.held.solution_search import (
     Reach,
@@ -36,7 +37,8 @@ def search_interval(
     if T is None:
         return solve_pose(arm, pose, None, None, limits)  # which says why it is none
     found = _best_rows(joint, T, preference, limits)
-    return with_seeds_row(arm, T, seed, preference, limits, found)
+    found = with_seeds_row(arm, T, seed, preference, limits, found)
+    return with_lone_row(arm, T, preference, limits, found)
 
 
 def _best_rows(joint: HeldJoint, T: Array, preference: Preference, limits: bool) -> Solutions:

@@ -12,8 +12,10 @@ import numpy as np
 from ikgen.runtime.python.arrays.array_types import Array, Index
 from ikgen.runtime.python.held.branch_ends import BranchEnd, branch_end, find_ends
 from ikgen.runtime.python.held.branch_tracks import LEAST, Tracks, tracked
-from ikgen.runtime.python.held.held_joint import HeldJoint, held_range, pose_lines
-from ikgen.runtime.python.rows.row_links import origins
+from ikgen.runtime.python.held.held_joint import HeldJoint, held_range, pose_lines, rows_at
+from ikgen.runtime.python.held.lone_value import lone_row
+from ikgen.runtime.python.rows.row_links import differences, origins
+from ikgen.runtime.python.solving.pose_solving import solve_pose
 
 __all__ = ["Interval", "Piece", "pieces_of", "self_motion_of"]
 
@@ -66,7 +68,22 @@ def self_motion_of(joint: HeldJoint, pose: Any, limits: bool) -> tuple[Interval,
     if T is None:
         return ()
     tracks = tracked(joint, T, *held_range(joint.arm, T, limits), limits)
-    return tuple(piece.interval() for piece in pieces_of(joint, T, tracks, limits))
+    found = tuple(piece.interval() for piece in pieces_of(joint, T, tracks, limits))
+    return found or _lone_interval(joint, T, limits)
+
+
+def _lone_interval(joint: HeldJoint, T: Array, limits: bool) -> tuple[Interval, ...]:
+    """One without width, where one value alone of the held joint reaches a pose."""
+    arm = joint.arm
+    q = lone_row(arm, T, limits) if arm.free else None
+    if q is None or not len(found := solve_pose(arm, T, None, q, limits)):
+        return ()
+    (value,) = q[list(arm.free)].tolist()
+    rows, branch = rows_at(joint, T, np.array([value])), 0
+    if joint.guarded and rows.real.any():
+        gap = np.abs(differences(arm, rows.q[0], found.q[0])).max(axis=1)
+        branch = int(np.where(rows.real[0], gap, inf).argmin()) % (len(gap) // joint.poses)
+    return (Interval(value, value, branch),)
 
 
 def pieces_of(joint: HeldJoint, T: Array, tracks: Tracks, limits: bool) -> list[Piece]:

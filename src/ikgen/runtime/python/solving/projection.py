@@ -38,17 +38,26 @@ def nearest_row(arm: Arm, T: Array, start: Row, limits: bool) -> Row:
     return best
 
 
-def nearest_rows(arm: Arm, T: Array, start: Array, limits: bool, flat: bool) -> Array:
-    """`nearest_row` of poses T (k, 4, 4), each with its start (k, dof), if `flat` along directions too in
-    which the pose hardly moves; hardly of such as no row takes."""
-    return _nearest(arm, T, start, limits, _STANDING, _FEW_STEPS, flat)
+def nearest_rows(
+    arm: Arm, T: Array, start: Array, limits: bool, flat: bool, starts: int = _START_COUNT
+) -> Array:
+    """`nearest_row` of poses T (k, 4, 4), each with its start (k, dof) and other `starts`, if `flat` along
+    directions too in which the pose hardly moves; hardly of such as no row takes."""
+    return _nearest(arm, T, start, limits, _STANDING, _FEW_STEPS, flat, starts)
 
 
 def _nearest(
-    arm: Arm, T: Array, start: Array, limits: bool, enough: float, first: int, flat: bool = False
+    arm: Arm,
+    T: Array,
+    start: Array,
+    limits: bool,
+    enough: float,
+    first: int,
+    flat: bool = False,
+    starts: int = _START_COUNT,
 ) -> Array:
     bounds = _step_bounds(arm, limits)
-    q = np.concatenate([_starts(arm, row, bounds) for row in start])
+    q = np.concatenate([_starts(arm, row, bounds, starts) for row in start])
     ends = _descend_to(arm, np.repeat(T, len(q) // len(T), axis=0), q, bounds, enough, first)
     begun = _least_of(len(T), *ends, _FOLLOWED)
     aims = np.repeat(T, _FOLLOWED, axis=0)
@@ -67,9 +76,9 @@ def _least_of(poses: int, q: Array, cost: Array, count: int) -> Array:
     return rows.reshape(-1, q.shape[1])
 
 
-def _starts(arm: Arm, start: Array, bounds: tuple[Array, Array]) -> Array:
-    """Configurations (n, dof): the one that is given (dof,), and others, held joints as there."""
-    q = np.vstack([np.clip(start, *bounds), _even_starts(arm, *bounds)])
+def _starts(arm: Arm, start: Array, bounds: tuple[Array, Array], count: int) -> Array:
+    """Configurations (1 + count, dof): the one that is given (dof,), and others, held joints as there."""
+    q = np.vstack([np.clip(start, *bounds), _even_starts(arm, *bounds, count)])
     q[:, list(arm.free)] = start[list(arm.free)]
     return q
 
@@ -79,11 +88,12 @@ def chord_costs(arm: Arm, T: Array, q: Array) -> Array:
     return np.asarray((_chord_errors(arm.task, forward(arm.chain, q), T) ** 2).sum(axis=1))
 
 
-def descended(arm: Arm, T: Array, q: Array, limits: bool) -> Array:
+def descended(arm: Arm, T: Array, q: Array, limits: bool, flat: bool = False) -> Array:
     """The joint values (k, dof) at which steps from q (k, dof) towards poses T (k, 4, 4) end, if they take
-    these."""
+    these, if `flat` along directions too in which the pose hardly moves."""
     bounds = _step_bounds(arm, limits)
-    return _descend_to(arm, T, np.clip(q, *bounds), bounds, _STANDING)[0]
+    floor = _FINEST if flat else _LEAST_DAMPING
+    return _descend_to(arm, T, np.clip(q, *bounds), bounds, _STANDING, floor=floor)[0]
 
 
 def off_by(task: Task, pose: Array, T: Array) -> Array:
@@ -122,15 +132,15 @@ def _step_bounds(arm: Arm, limits: bool) -> tuple[Array, Array]:
     return (low, high) if limits else (np.full(len(low), -inf), np.full(len(low), inf))
 
 
-def _even_starts(arm: Arm, low: Array, high: Array) -> Array:
-    """Configurations (n, dof) that fill the limits evenly: Kronecker's sequence by powers of the root of
-    `x^(dof + 1) = x + 1` (Roberts 2018)."""
+def _even_starts(arm: Arm, low: Array, high: Array, count: int) -> Array:
+    """Configurations (count, dof) that fill the limits evenly: Kronecker's sequence by powers of the root
+    of `x^(dof + 1) = x + 1` (Roberts 2018)."""
     dof = len(low)
     root = 2.0
     for _ in range(40):
         root = (1.0 + root) ** (1.0 / (dof + 1))
     steps = (1.0 / root) ** np.arange(1, dof + 1)
-    part = (0.5 + np.arange(1, _START_COUNT + 1)[:, None] * steps) % 1.0
+    part = (0.5 + np.arange(1, count + 1)[:, None] * steps) % 1.0
     half = np.where(arm.chain.revolute, pi, arm.task.size)
     centre = np.clip(0.0, low + half, np.maximum(high - half, low + half))
     least, most = np.maximum(low, centre - half), np.minimum(high, centre + half)
