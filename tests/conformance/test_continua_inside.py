@@ -10,7 +10,7 @@ import pytest
 from benchmarks.agreement import arm_of, runner_of
 from numpy.typing import NDArray
 from tests.support.redundant_arms import SHOULDER_ELBOW_WRIST, serial_urdf
-from tests.support.sampled import BOTH
+from tests.support.sampled import BOTH, PYTHON_OFTEN
 from tests.support.serial_urdf import serial_urdf as origins_urdf
 from tests.support.solving import FIXTURES
 
@@ -26,7 +26,7 @@ LOWER, UPPER = 0.5, 0.7
 pytestmark = pytest.mark.usefixtures("solved_once")
 
 
-@BOTH
+@PYTHON_OFTEN
 def test_a_stretched_wrist_is_answered_inside_the_limits(language: str, tmp_path: Path) -> None:
     derivation = derive(Request(FIXTURES / "kuka_kr6r900sixx.urdf"))
     arm, rng = arm_of(derivation), np.random.default_rng(4)
@@ -97,7 +97,7 @@ def straight_wrists() -> NDArray[np.float64]:
     return np.clip(q + random.normal(scale=off, size=q.shape), low, high)
 
 
-@BOTH
+@PYTHON_OFTEN
 def test_a_continuum_has_a_row_inside_beside_those_of_other_branches(
     language: str, tmp_path: Path
 ) -> None:

@@ -38,14 +38,14 @@ def both(tmp_path_factory: pytest.TempPathFactory) -> Both:
 
 def stretched(arm: ModuleType) -> Array:
     """The line of the arm leaves the held joint one value of each side of the shoulder."""
-    q = np.random.default_rng(3).uniform(0.9 * arm.LOWER, 0.9 * arm.UPPER, (6, arm.DOF))
+    q = np.random.default_rng(3).uniform(0.9 * arm.LOWER, 0.9 * arm.UPPER, (3, arm.DOF))
     q[:, 3] = 0.0
     return np.asarray(q)
 
 
 def on_limits(arm: ModuleType) -> Array:
     """Several joints on their limits, at many of which these meet where one alone could go on."""
-    quarters = np.random.default_rng(4).integers(-2, 3, (14, arm.DOF)) * (np.pi / 2)
+    quarters = np.random.default_rng(4).integers(-2, 3, (8, arm.DOF)) * (np.pi / 2)
     return np.clip(quarters, arm.LOWER, arm.UPPER)
 
 

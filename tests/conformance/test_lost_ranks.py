@@ -37,11 +37,11 @@ MEETING = [
 def test_every_pose_has_a_row(rows: list[Row], tmp_path: Path) -> None:
     header = header_of(derive(Request(dh_file(tmp_path / "arm.toml", rows))).module, tmp_path)
     random = np.random.default_rng(2)
-    q = random.integers(-4, 5, (3000, 6)) * np.pi / 4
-    some = random.random((1500, 6)) < 0.5
-    q[::2] = np.where(some, random.uniform(-3.0, 3.0, (1500, 6)), q[::2])
-    q[1::2] += random.normal(size=(1500, 6)) * 10.0 ** random.uniform(-12.0, -5.0, (1500, 1))
+    q = random.integers(-4, 5, (1600, 6)) * np.pi / 4
+    some = random.random((800, 6)) < 0.5
+    q[::2] = np.where(some, random.uniform(-3.0, 3.0, (800, 6)), q[::2])
+    q[1::2] += random.normal(size=(800, 6)) * 10.0 ** random.uniform(-12.0, -5.0, (800, 1))
     if rows is FLAT:
-        q[:, 1], q[:, 3] = random.choice([0.0, np.pi], (2, 3000))
+        q[:, 1], q[:, 3] = random.choice([0.0, np.pi], (2, 1600))
     status = np.array(header.solve_many(header.forward(q)).status)
     assert (status == "OK").all(), q[status != "OK"]

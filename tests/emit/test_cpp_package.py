@@ -42,7 +42,7 @@ HELD: dict[str, dict[str, float]] = {"kuka_kr6r900sixx": {}, "franka_fr3": {"fr3
 
 
 @needs_cmake
-@pytest.mark.parametrize("robot", sampled(HELD, ["franka_fr3"]))
+@pytest.mark.parametrize("robot", sampled(HELD, ["kuka_kr6r900sixx"]))
 def test_package_builds_installs_and_is_found(robot: str, tmp_path: Path) -> None:
     request = Request(FIXTURES / f"{robot}.urdf", free=HELD[robot], name="arm")
     made = generate(request, Outputs(emit=("cpp-package",), out=tmp_path, samples=60))

@@ -8,11 +8,15 @@ from typing import Any
 import pytest
 from tests.support.solving import NO_COMPILER
 
-__all__ = ["BOTH", "in_languages", "sampled"]
+__all__ = ["BOTH", "PYTHON_OFTEN", "in_languages", "sampled"]
 
 COMPILES = pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "")
 BOTH = pytest.mark.parametrize("language", ["python", pytest.param("cpp", marks=COMPILES)])
 """A test in either language."""
+PYTHON_OFTEN = pytest.mark.parametrize(
+    "language", ["python", pytest.param("cpp", marks=(COMPILES, pytest.mark.long))]
+)
+"""The same, of which C++ is for `-m long`."""
 
 
 def sampled(names: Iterable[Any], always: Collection[Any]) -> list[Any]:
