@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from tests.support.polynomials import polynomial_values
+from tests.support.sessions import collected_session
 from tests.support.tables import Row, table
 
 from ikgen.algebra import polynomial as poly
@@ -13,7 +14,6 @@ from ikgen.equations.equation_set import EquationSet
 from ikgen.equations.knowledge import Knowledge, PolynomialEquation, Variable
 from ikgen.equations.matching import AngleSplit
 from ikgen.equations.probes import make_probes
-from ikgen.solver.session import Session
 from ikgen.solver.solve import solve_chain
 from ikgen.solver.transforms import square_and_add
 
@@ -27,17 +27,11 @@ FOUR: tuple[Row, ...] = (
 
 @pytest.mark.parametrize("rows", [WRIST_FIRST, FOUR])
 def test_what_it_makes_holds_and_has_one_unknown(rows: tuple[Row, ...]) -> None:
-    dh = table(*rows)
-    probes = make_probes(dh)
-    system = EquationSet(ExpressionGraph(len(probes.values)), dh, probes.values, probes.pose)
-    _ = system.equations
-    session = Session(system, probes, Knowledge(system))
-    session.start()
-    session.collect()
+    session = collected_session(table(*rows))
     made = square_and_add.apply(session.equations, session.knowledge)
     assert made
     for e in made:
-        assert np.abs(polynomial_values(e.polynomial, probes.values)).max() < 1e-9
+        assert np.abs(polynomial_values(e.polynomial, session.probes.values)).max() < 1e-9
         assert e.rank == len(e.unknowns) == 1 and len(e.sources) == 2
         assert e.polynomial
 

@@ -5,14 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from tests.support.polynomials import polynomial_values
+from tests.support.sessions import collected_session
 from tests.support.tables import Row, table
 
 from ikgen.algebra import polynomial as poly
-from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.algebra.polynomial import Polynomial
-from ikgen.equations.equation_set import EquationSet
 from ikgen.equations.knowledge import Knowledge, PolynomialEquation, Variable
-from ikgen.equations.probes import make_probes
 from ikgen.solver.session import Session
 from ikgen.solver.solve import solve_chain
 from ikgen.solver.transforms import substitution
@@ -25,14 +23,7 @@ FIRST, THIRD = Variable("angle", (1, 0, 0)), Variable("angle", (0, 0, 1))
 
 
 def session_of(rows: tuple[Row, ...]) -> Session:
-    dh = table(*rows)
-    probes = make_probes(dh)
-    system = EquationSet(ExpressionGraph(len(probes.values)), dh, probes.values, probes.pose)
-    _ = system.equations
-    session = Session(system, probes, Knowledge(system))
-    session.start()
-    session.collect()
-    return session
+    return collected_session(table(*rows))
 
 
 def test_what_it_makes_holds_and_has_fewer_unknowns() -> None:

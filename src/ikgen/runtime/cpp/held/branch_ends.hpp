@@ -45,32 +45,32 @@ template <class Arm> struct BranchEnd {
   void find(const HeldSweep<Arm>& sweep, LastEnd<Arm>& last) noexcept {
     if constexpr (!Sample::kMarginsTell)
       if (goes && follow(sweep)) return;
-    const BranchEnd before = *this;
     if (last.settled && ends_at(last.inside)) return;
     if (last.known && (found(last.inside, last.outside) || found(last.outside, last.inside))) return;
-    narrow_down(sweep, last, at_fold);
+    const BranchEnd before = *this;
+    narrow_down(sweep, last);
     if (!Sample::kMarginsTell || !at_fold || takes(sweep.pose)) return;
     *this = before;
     halves = true;
-    narrow_down(sweep, last, false);
+    narrow_down(sweep, last);
     last.known = last.settled = false;
   }
 
  private:
   static constexpr double kClose = 1e-8;  // error of a row that has lost digits by a fold alone
-  bool stays;          // in its lane, however near others come
-  bool halves = false;  // steps are halves, whatever is expected
-  bool goes = false;  // to the row `there` at the value `then`
+  bool stays;           // in its lane, however near others come
+  bool halves = false;  // steps are halves, and rows tell, not margins
+  bool goes = false;    // to the row `there` at the value `then`
   double there[Arm::kDof], then;
   int count = 0;
   double at[kKnown + 1], value[kKnown + 1];  // the nearest last
 
-  // Looks for it; `coarse`: by margins, where rows may be left as the closed form has them.
-  void narrow_down(const HeldSweep<Arm>& sweep, LastEnd<Arm>& last, bool coarse) noexcept {
+  // Looks for it, at a fold by margins, where rows may be left as the closed form has them.
+  void narrow_down(const HeldSweep<Arm>& sweep, LastEnd<Arm>& last) noexcept {
     last.inside.held = last.outside.held = kInfinity;
     last.settled = false;
     for (int step = 0; step < kSteps && std::abs(outer - inner) > kEnough; ++step) {
-      const Sample s = sweep.at(trial(step), coarse && at_fold);
+      const Sample s = sweep.at(trial(step), at_fold && !halves);
       const int row = row_in(s);
       const bool seen = row >= 0 && s.real[row] && s.distance(row, q) < 1.0, good = seen && s.off[row] <= 0.0;
       const double remote = good ? outer : inner;
