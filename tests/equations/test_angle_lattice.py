@@ -52,6 +52,17 @@ def lattice_of(solved: list[AngleCombination]) -> AngleLattice:
     return lattice
 
 
+def test_what_would_leave_parts_of_a_turn_is_told() -> None:
+    """2u leaves u but for half a turn, and so do u + v and u - v; u + v and v leave nothing."""
+    assert lattice_of([]).leaves_parts((2, 0, 0, 0, 0))
+    assert not lattice_of([]).leaves_parts((1, 1, 0, 0, 0))
+    one = lattice_of([(1, 1, 0, 0, 0)])
+    assert not one.leaves_parts((0, 1, 0, 0, 0))
+    assert one.leaves_parts((1, -1, 0, 0, 0))
+    assert one.leaves_parts((5, 1, 0, 0, 0)) and not one.leaves_parts((0, 0, 0, 1, 0))
+    assert not lattice_of([(1, 0, 0, 0, 0)]).leaves_parts((2, 1, 0, 0, 0))
+
+
 def rank_by_hand(combinations: list[AngleCombination]) -> int:
     """Rank over the rationals, by elimination."""
     rows = [[Fraction(k) for k in combination] for combination in combinations]

@@ -315,8 +315,9 @@ def _chain_of(frames: Array, motions: tuple[_Motion, ...], dof: int) -> _Chain:
 def _turns_freely(motions: Sequence[_Motion]) -> bool:
     """Whether a joint's values are the same configuration where they differ by whole turns, and only
     there."""
-    _, turning, ratio, _ = motions[0]
-    return turning and abs(ratio) == 1.0 and all(abs(m[2] - round(m[2])) < 1e-12 for m in motions)
+    turns = [round(m[2]) for m in motions]
+    whole = all(m[1] and abs(m[2] - n) < 1e-12 for m, n in zip(motions, turns, strict=True))
+    return whole and bool(np.gcd.reduce(turns) == 1)
 
 
 def _link_motions(chain: _Chain, parts: Array, q: Array) -> Array:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import re
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +18,14 @@ from ikgen.generation.derive import derive
 from ikgen.generation.generate import generate
 from ikgen.generation.read import read
 from ikgen.generation.request import Outputs, Request
-from ikgen.kinematics.whole_turns import check_couplings, middle_of, turns_freely
+from ikgen.kinematics.whole_turns import (
+    check_couplings,
+    middle_of,
+    most_parts,
+    range_of,
+    turns_freely,
+)
+from ikgen.model.dh import DHChain
 
 LIMITS = (-5.0, 7.0)  # of the crank: nearly two turns, a waist at half its value takes one
 ENDS = {"base": "base_link", "tip": "tool0", "task": "position"}
@@ -87,18 +96,20 @@ def test_a_slide_that_turns_a_joint_has_a_period_too(tmp_path: Path) -> None:
     assert middle_of(short, 0) == pytest.approx(0.3)
 
 
-def test_ratios_that_are_not_whole_are_refused(tmp_path: Path) -> None:
+def test_ratios_of_no_whole_numbers_are_refused(tmp_path: Path) -> None:
     robot = write_robot(tmp_path / "elbow.urdf")
     text = robot.read_text().replace(
         '<joint name="elbow" type="revolute">',
-        '<joint name="elbow" type="revolute"><mimic joint="waist" multiplier="0.007"/>',
+        '<joint name="elbow" type="revolute"><mimic joint="waist" multiplier="0.700000001"/>',
     )
     robot.write_text(text)
     with pytest.raises(
-        UnsolvedChainError, match=r"'elbow' and 'waist' turn in the ratio 0\.007 : 1, and closed"
+        UnsolvedChainError,
+        match=r"turn in the ratio 0\.700000001 : 1, and closed forms need a ratio",
     ) as caught:
         derive(request(robot))
     assert caught.value.hint.startswith("give --lock waist=VALUE")
+    assert "--couple elbow=waist*k with fewer digits" in caught.value.hint
     robot.write_text(text.replace('"elbow" type="revolute"', '"elbow" type="prismatic"'))
     slides = read(request(robot)).dh
     with pytest.raises(UnsolvedChainError, match="one turns and the other slides"):
@@ -109,3 +120,47 @@ def test_whole_ratios_turn_freely(tmp_path: Path) -> None:
     dh = read(request(write_robot(tmp_path / "elbow.urdf"))).dh
     assert all(turns_freely(dh, j) for j in range(dh.dof))
     check_couplings(dh)
+
+
+def geared(folder: Path, ratio: str, low: float = -2.5, high: float = 2.5) -> DHChain:
+    """The elbow arm whose elbow follows the shoulder, which has these limits."""
+    robot = write_robot(folder / "elbow.urdf")
+    text = robot.read_text().replace(
+        '<joint name="elbow" type="revolute">',
+        f'<joint name="elbow" type="revolute"><mimic joint="shoulder" multiplier="{ratio}"/>',
+    )
+    head, rest = text.split('<joint name="shoulder"')
+    rest = re.sub('lower="[^"]*" upper="[^"]*"', f'lower="{low}" upper="{high}"', rest, count=1)
+    robot.write_text(f'{head}<joint name="shoulder"{rest}')
+    return read(request(robot)).dh
+
+
+@pytest.mark.parametrize(
+    ("ratio", "share", "parts"),
+    [("2", 1.0, 2), ("0.5", 0.5, 2), ("0.8", 0.2, 5), ("-1.5", 0.5, 3), ("1.1393", 1e-4, 11393)],
+)
+def test_the_variable_is_the_share_of_a_turn_of_which_all_rows_turn_multiples(
+    tmp_path: Path, ratio: str, share: float, parts: int
+) -> None:
+    dh = geared(tmp_path, ratio)
+    check_couplings(dh)
+    assert dh.lead_row(1).scale == pytest.approx(share, rel=1e-12) and most_parts(dh) == parts
+    rows = [row for row in dh.rows if row.driver == 1]
+    for row in rows:
+        turns, shift = dh.follows(row)
+        assert turns.is_integer()
+        lead = dh.lead_row(1)
+        for q in (-1.3, 0.4):
+            v = lead.scale * q + lead.offset.value
+            assert turns * v + shift == pytest.approx(row.scale * q + row.offset.value, abs=1e-12)
+
+
+def test_values_are_looked_for_in_a_turn_and_inside_the_limits(tmp_path: Path) -> None:
+    circle = (-math.pi, math.pi)
+    assert range_of(geared(tmp_path, "2"), 1) == circle
+    low, high = np.array(range_of(geared(tmp_path, "0.8", 0.0, 1.0), 1)) / 0.2
+    assert (low, high) == pytest.approx((0.5 - math.pi, 0.5 + math.pi))
+    low, high = np.array(range_of(geared(tmp_path, "0.8", -6.0, 6.0), 1)) / 0.2
+    assert -6.1 < low < -6.0 and 6.0 < high < 6.1
+    alone = read(request(crank_robot(tmp_path, 0.5, LIMITS))).dh
+    assert range_of(alone, 0) == circle

@@ -10,6 +10,7 @@ from functools import cache
 from pathlib import Path
 
 import pytest
+from tests.support.redundant_arms import serial_urdf
 
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.emit.derivation import Derivation
@@ -34,6 +35,12 @@ TABLES = {
     "elimination": ROOT / "tests" / "robots" / "tables" / "Issue4.toml",
     "sums": ROOT / "tests" / "robots" / "tables" / "UR5.toml",
 }
+GEARED = (
+    ("waist", "revolute", "0 0 1", "0 0 0.3", (-3.0, 3.0)),
+    ("shoulder", "revolute", "0 1 0", "0.05 0 0.1", (-1.2, 1.2)),
+    ("elbow", "revolute", "0 1 0", "0 0 0.3", (-2.6, 2.6)),
+    ("pitch", "revolute", "0 -1 0", "0 0 0.25", (-2.4, 2.4)),
+)
 
 
 @cache
@@ -260,3 +267,16 @@ def made(build: str) -> Sum:
 )
 def test_notation(build: str, latex: str) -> None:
     assert show(made(build)).latex == latex
+
+
+def test_the_table_of_a_geared_arm_counts_variables_by_joints(tmp_path: Path) -> None:
+    """As its equations do: a row that follows has its multiple of the joint's variable, and its
+    constant."""
+    path = tmp_path / "arm.urdf"
+    joint = '<joint name="elbow" type="revolute">'
+    mimic = f'{joint}<mimic joint="shoulder" multiplier="0.8" offset="0.3"/>'
+    path.write_text(serial_urdf("arm", GEARED).replace(joint, mimic))
+    (tex,) = (t for file, t in emit_report(derive(Request(path))).items() if file.endswith(".tex"))
+    table = tex[tex.index("Craig") :][:3000]
+    assert r"5\,\theta_{2}+\tfrac{\pi }{2}$" in table and r"4\,\theta_{2}-0.3$" in table, table
+    assert r"\theta_{2}=-0.2\,q_{2}" in tex, tex[tex.index("joint values q") :][:300]

@@ -7,6 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from tests.support.probed import given
+from tests.support.tables import table
 
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.equations.equation import Equation
@@ -19,6 +20,7 @@ from ikgen.solver.leaves import (
     simultaneous,
     sine_and_cosine,
     tangent,
+    trig_polynomial,
     trig_quartic,
 )
 
@@ -130,6 +132,23 @@ def test_a_pair_takes_both_equations_and_both_their_sources() -> None:
     assert simultaneous.find(equations, LENGTH, knowledge) == []
 
 
+def test_multiples_of_an_angle_are_taken_with_the_range_of_its_joint() -> None:
+    """Of the angle of a joint where its values are looked for, of a sum on the circle."""
+    dh = table(*[("R", "0", 0.3, 0.0)] * 3)
+    knowledge = SimpleNamespace(graph=G, variables=SimpleNamespace(dh=dh))
+    both = {trig("c", 5): A, trig("s", 2): B, trig("s", 5): D, ONE: C}
+    (candidate,) = trig_polynomial.find([equation(both, ANGLE)], ANGLE, knowledge)
+    form = candidate.form
+    assert form.harmonics == (2, 5) and form.coefficients == (G.zero, B, A, D, C)
+    assert form.span == (-np.pi, np.pi) and candidate.branches == form.branches == 10
+    one = trig_polynomial.find([equation({trig("c", 3): A}, ANGLE)], ANGLE, knowledge)
+    assert [c.coefficients for c in one] == [(A, G.zero, G.zero)]
+    for other in (SINGLE, DOUBLE, FULL, {**TRIPLE, **LINE}):
+        assert trig_polynomial.find([equation(other, ANGLE)], ANGLE, knowledge) == []
+    assert trig_polynomial.find([equation(PARABOLA, LENGTH)], LENGTH, knowledge) == []
+    assert trig_polynomial.find([equation(TRIPLE, OTHER, ANGLE)], ANGLE, knowledge) == []
+
+
 @pytest.mark.parametrize("off", [1e-12, 1e-6])
 def test_the_sides_of_a_pair_do_not_tell_whether_it_is_one(off: float) -> None:
     """Only the coefficients do, however large the sides are."""
@@ -169,7 +188,9 @@ def test_a_common_unknown_factor_leaves_a_direction() -> None:
 
 
 def test_every_leaf_has_a_pattern_here() -> None:
-    here = (algebraic, quadratic, trig_quartic, sine_and_cosine, simultaneous, tangent)
+    here = (
+        algebraic, quadratic, trig_polynomial, trig_quartic, sine_and_cosine, simultaneous, tangent
+    )  # fmt: skip
     assert {leaf.find for leaf in LEAVES} == {module.find for module in here}
 
 

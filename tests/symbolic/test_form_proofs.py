@@ -11,6 +11,7 @@ import sympy
 
 from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
+from ikgen.errors import UsageError
 from ikgen.forms.form import Form
 from ikgen.forms.linear_form import Linear
 from ikgen.forms.lowered_form import LoweredForm, Tolerances
@@ -19,9 +20,11 @@ from ikgen.forms.quadratic_form import Quadratic
 from ikgen.forms.quartic_form import TrigQuartic
 from ikgen.forms.sine_cosine_form import SineCosine
 from ikgen.forms.tangent_form import Tangent
+from ikgen.forms.trig_polynomial_form import TrigPolynomial
 from ikgen.symbolic.form_branches import alternatives
 from ikgen.symbolic.form_proofs import prove_form
 from ikgen.symbolic.lowered_view import LoweredView
+from ikgen.symbolic.trig_polynomial_root import TrigPolynomialRoot
 from ikgen.symbolic.trig_quartic_root import TrigQuarticRoot
 
 V, C, O = "variable", "constant", "zero"  # noqa: E741
@@ -106,6 +109,32 @@ def _angle(value: sympy.Expr) -> tuple[str, str]:
     """The value, angles up to whole turns."""
     n = sympy.N(value, 30)
     return str(sympy.N(sympy.cos(n), 12)), str(sympy.N(sympy.sin(n), 12))
+
+
+def test_roots_of_a_trigonometric_polynomial_of_any_degree() -> None:
+    u = sympy.Symbol("u", real=True)
+    terms = [(4, 0.3, -0.8), (5, 1.1, 0.2), (9, -0.4, 0.6)]
+    flat = [x for term in terms for x in term]
+    low, high, a0 = -0.6, 1.1, 0.1
+    left = a0 + sum(a * sympy.cos(n * u) + b * sympy.sin(n * u) for n, a, b in terms)
+    values = sympy.lambdify(u, left, "numpy")(np.linspace(low, high, 20_001))
+    count = int((np.diff(values > 0.0) != 0).sum())
+    roots = [TrigPolynomialRoot(k, low, high, a0, *flat).evalf() for k in range(count + 1)]
+    assert count > 2 and roots[count] is sympy.nan
+    assert all(abs(float(left.subs(u, x))) < 1e-12 for x in roots[:count])
+    assert all(low <= x <= high for x in roots[:count])
+    arrays = sympy.lambdify(u, TrigPolynomialRoot(1, low, high, u, *flat), "numpy")
+    assert abs(arrays(np.array([a0, 9.0]))[0] - float(roots[1])) < 1e-12
+    assert np.isnan(arrays(np.array([a0, 9.0]))[1])
+
+
+def test_a_trigonometric_polynomial_of_a_high_degree_is_not_written() -> None:
+    terms = [sympy.Symbol(x) for x in ("a", "b", "a0")]
+    made = alternatives(TrigPolynomial((), (5,), (-1.0, 1.0)), terms)
+    assert len(made.values) == 5 and made.values[0].func is TrigPolynomialRoot
+    with pytest.raises(UsageError, match="degree 12,000 has no roots in SymPy"):
+        alternatives(TrigPolynomial((), (12_000,), (-1e-3, 1e-3)), terms)
+    assert prove_form(TrigPolynomial, (V, V, V)).proved
 
 
 def test_roots_of_a_trigonometric_polynomial() -> None:

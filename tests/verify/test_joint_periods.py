@@ -34,7 +34,9 @@ def period(screws: list[list[float]], A: list[list[float]]) -> NDArray[np.float6
         ((2.0,), 0.5),
         ((0.5,), 2.0),
         ((1.0, -2.0), 1.0),
-        ((0.5, -1.5), 2.0),
+        ((0.5, -0.5), 2.0),
+        ((2.0, -3.0), 1.0),
+        ((4.0, 6.0), 0.5),
         ((-3.0, 0.0), 1 / 3),
     ],
 )
@@ -43,8 +45,10 @@ def test_the_slowest_axis_tells_the_period(factors: tuple[float, ...], turns: fl
     assert found == pytest.approx([turns * TURN])
 
 
-def test_there_is_none_where_axes_turn_at_odds_or_something_slides() -> None:
+def test_there_is_none_where_it_takes_several_turns_or_something_slides() -> None:
     assert np.isinf(period([TURNING, TURNING], [[1.0], [1.5]])).all()
+    assert np.isinf(period([TURNING, TURNING], [[0.5], [-1.5]])).all()
+    assert np.isinf(period([TURNING, TURNING], [[2.0], [2.5]])).all()
     assert np.isinf(period([SLIDING], [[1.0]])).all()
     assert np.isinf(period([TURNING, SLIDING], [[1.0], [0.1]])).all()
     found = period([TURNING, SLIDING, TURNING], [[1.0, 0, 0], [0, 1.0, 0], [0, 0, 2.0]])

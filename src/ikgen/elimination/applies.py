@@ -67,8 +67,6 @@ def axis_motions(dh: DHChain, moving: Sequence[DHRow]) -> tuple[Motion, ...]:
     joints = sorted({row.driver for row in moving})
     out = []
     for row in moving:
-        lead = dh.lead_row(row.driver)
-        ratio = float(round(row.scale / lead.scale))
-        shift = row.offset.value - ratio * lead.offset.value
+        ratio, shift = dh.follows(row)
         out.append((joints.index(row.driver), row.revolute, ratio, shift))
     return tuple(out)

@@ -30,6 +30,7 @@ class AngleLattice:
             AngleCombination, tuple[int, AngleCombination, AngleCombination]
         ] = {}
         self._ranks: dict[frozenset[AngleCombination], int] = {}
+        self._parts: dict[AngleCombination, bool] = {}
         self._solved_rank = 0
 
     def over(self, graph: ExpressionGraph, variables: JointVariables) -> AngleLattice:
@@ -38,6 +39,7 @@ class AngleLattice:
         other._graph, other._variables = graph, variables
         other.solved = dict(self.solved)
         other._represented, other._ranks = dict(self._represented), dict(self._ranks)
+        other._parts = dict(self._parts)
         return other
 
     def add(self, combination: AngleCombination) -> None:
@@ -59,6 +61,7 @@ class AngleLattice:
         """Find all combinations that follow from the solved ones."""
         self._represented.clear()
         self._ranks.clear()
+        self._parts.clear()
         known = [list(k) for k in self.solved]
         self._solved_rank = int(np.linalg.matrix_rank(np.array(known))) if known else 0
         self.known = self._following(self.solved)
@@ -108,6 +111,19 @@ class AngleLattice:
                     return factor, rep, shift
         self._represented[combination] = result
         return result
+
+    def leaves_parts(self, combination: AngleCombination) -> bool:
+        """Whether with this one solved too a joint's angle would follow but for whole parts of a turn: no
+        equation has an unknown then, and yet several values are left, as 5u and 4u + v leave of u."""
+        if combination not in self._parts:
+            solved = [*self.solved, combination]
+            following = self._following(solved)
+            rank = np.linalg.matrix_rank(np.array(solved))
+            self._parts[combination] = any(
+                unit not in following and np.linalg.matrix_rank(np.array([*solved, unit])) == rank
+                for unit in map(self._variables.unit, range(self._variables.count))
+            )
+        return self._parts[combination]
 
     def rank(self, combinations: list[AngleCombination]) -> int:
         """Number of independent unknowns among the angles of combinations."""

@@ -164,6 +164,11 @@ class Knowledge:
         assert joint is not None
         return bool(self.variables.distance(joint).support & self.known_mask)
 
+    def leaves_parts(self, variable: Variable) -> bool:
+        """Whether with the variable solved too a joint's angle would follow but for whole parts of a
+        turn."""
+        return variable.kind == "angle" and self._lattice.leaves_parts(variable.combination)
+
     def known_expr(self, node: Expr) -> bool:
         """Whether an expression has known atoms only."""
         return not node.support & ~self.known_mask

@@ -17,10 +17,12 @@ from numpy.typing import NDArray
 from ikgen.kinematics.fixed_order import product
 from ikgen.kinematics.forward import file_slopes
 from ikgen.kinematics.rigid import dh_link
+from ikgen.kinematics.whole_turns import range_of
 from ikgen.model.dh import Angle, DHChain, DHRow, Length
 
 __all__ = [
-    "Probes", "arm_size", "dh_pose", "elbow_position", "least_regular", "make_probes", "smallest_singular",
+    "Probes", "arm_size", "dh_pose", "elbow_position", "in_ranges",
+    "least_regular", "make_probes", "quarters", "smallest_singular",
 ]  # fmt: skip
 
 Kept = Mapping[str, NDArray[np.float64]]
@@ -67,9 +69,8 @@ def dh_pose(
     count = len(values)
     T = np.broadcast_to(np.eye(4), (count, 4, 4))
     for row in dh.rows[:rows]:
-        lead = dh.lead_row(row.driver)
-        ratio = row.scale / lead.scale
-        v = ratio * (values[:, row.driver] - lead.offset.value) + row.offset.value
+        ratio, shift = dh.follows(row)
+        v = ratio * values[:, row.driver] + shift
         theta = v if row.revolute else np.full(count, row.theta.value)
         d = np.zeros(count) + _constant(row.d, kept) if row.revolute else v
         T = product(T, dh_link(_constant(row.alpha, kept), _constant(row.a, kept), theta, d))
@@ -157,13 +158,13 @@ def make_probes(
     revolute = np.array([dh.lead_row(j).revolute for j in range(dh.dof)])
 
     def random(count: int) -> NDArray[np.float64]:
-        angles = rng.uniform(-np.pi, np.pi, (count, dh.dof))
+        angles = in_ranges(dh, rng.uniform(-np.pi, np.pi, (count, dh.dof)))
         lengths = size * rng.uniform(0.3, 1.5, (count, dh.dof))
         return np.where(revolute, angles, lengths)
 
     generic = random(GENERIC)
     special = random(8 * SPECIAL)
-    quarter = rng.integers(-1, 3, special.shape) * (np.pi / 2)
+    quarter = quarters(dh, rng.integers(-1, 3, special.shape))
     chosen = rng.random(special.shape) < rng.uniform(0.15, 1.0, (len(special), 1))
     special = np.where(chosen, np.where(revolute, quarter, 0.0), special)
     smallest, generally = (
@@ -178,6 +179,26 @@ def make_probes(
     if tool:
         pose = product(pose, dh.X_tip)
     return Probes(values, pose, GENERIC, GENERIC + len(regular), typical, kept)
+
+
+def in_ranges(dh: DHChain, turns: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Angles (N, dof) of a whole circle, those of each joint brought where its own are looked for."""
+    turns = turns.copy()
+    for joint, row in enumerate(map(dh.lead_row, range(dh.dof))):
+        low, high = range_of(dh, joint) if row.revolute else (-np.pi, np.pi)
+        if high - low < 2.0 * np.pi:
+            turns[:, joint] = 0.5 * (low + high) + (high - low) / (2.0 * np.pi) * turns[:, joint]
+    return turns
+
+
+def quarters(dh: DHChain, counts: NDArray[np.int64]) -> NDArray[np.float64]:
+    """DH variables (N, dof) at these numbers of quarter turns: of the variable, or where several turns of
+    the joint are on the circle of the joint."""
+    values = counts * (np.pi / 2)
+    for joint, row in enumerate(map(dh.lead_row, range(dh.dof))):
+        if row.revolute and range_of(dh, joint) != (-np.pi, np.pi):
+            values[:, joint] = row.scale * values[:, joint] + row.offset.value
+    return np.asarray(values)
 
 
 def _kept_values(dh: DHChain, count: int, size: float) -> Kept:

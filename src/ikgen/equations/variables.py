@@ -70,18 +70,13 @@ class JointVariables:
         return other
 
     def _row_variable(self, row: DHRow) -> _RowVariable:
-        first = self.primary[row.driver]
-        ratio = row.scale / first.scale
-        if row.revolute and abs(ratio - round(ratio)) > 1e-12:
+        ratio, shift = self.dh.follows(row)
+        if row.revolute and not ratio.is_integer():
             raise UnsupportedJointError(
-                f"joint '{row.name}' follows '{first.name}' with the ratio {ratio:g}",
-                hint="closed forms need whole-number mimic ratios; lock one of the two joints",
+                f"joint '{row.name}' follows '{self.primary[row.driver].name}' with the ratio {ratio:g}",
+                hint="closed forms need mimic ratios of whole numbers; lock one of the two joints",
             )
-        return _RowVariable(
-            row.driver,
-            round(ratio) if row.revolute else 1,
-            row.offset.value - ratio * first.offset.value,
-        )
+        return _RowVariable(row.driver, round(ratio) if row.revolute else 1, shift)
 
     @property
     def largest_factor(self) -> int:
@@ -158,7 +153,7 @@ class JointVariables:
         if row.revolute:
             return self.length(row.d)
         g = self.graph
-        ratio = row.scale / self.primary[row.driver].scale
+        ratio, _ = self.dh.follows(row)
         return g.add(g.mul(g.const(ratio), self.distance(var.driver)), g.const(var.shift))
 
     def length(self, length: Length) -> Expr:

@@ -70,17 +70,17 @@ def _all_hold(dh: DHChain, program: Program) -> bool:
 def _counts(dh: DHChain, program: Program) -> Iterator[int]:
     """Numbers of distinct solutions of poses: joints are at random values and at multiples of 90 degrees,
     where solutions of an arm with fewer than six joints meet that are apart elsewhere."""
-    from ikgen.equations.probes import arm_size, dh_pose
+    from ikgen.equations.probes import arm_size, dh_pose, in_ranges, quarters
     from ikgen.kinematics.fixed_order import product
     from ikgen.lowering.held_angle import held_angle
     from ikgen.program.interpret import run
 
     rng, size = np.random.default_rng(_SEED), arm_size(dh)
     revolute = np.array([dh.lead_row(j).revolute for j in range(dh.dof)])
-    turns = rng.uniform(-np.pi, np.pi, (_POSES, dh.dof))
+    turns = in_ranges(dh, rng.uniform(-np.pi, np.pi, (_POSES, dh.dof)))
     values = np.where(revolute, turns, size * rng.uniform(0.3, 1.5, turns.shape))
-    quarters = np.where(revolute, rng.integers(-1, 3, values.shape) * (np.pi / 2), 0.0)
-    values = np.where(rng.random(values.shape) < rng.random((_POSES, 1)), quarters, values)
+    right = np.where(revolute, quarters(dh, rng.integers(-1, 3, values.shape)), 0.0)
+    values = np.where(rng.random(values.shape) < rng.random((_POSES, 1)), right, values)
     poses = product(product(dh.X_base, dh_pose(dh, values)), dh.X_tip)
     angle = held_angle(dh)
     for value, pose in zip(values, poses, strict=True):

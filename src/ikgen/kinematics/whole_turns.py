@@ -1,9 +1,9 @@
 """What whole turns of a joint do where mimic joints follow it.
 
-A row's angle is `scale * q + offset` and counts modulo 2 pi. Where the leading row of a joint has the scale
-±1 and all others whole multiples of it, `q + 2 pi` is the same configuration, and no smaller step is. With
-another scale the step is `2 pi / |scale|`: a whole turn of the joint is then another configuration, or one
-of several that are the same.
+A row's angle is `scale * q + offset` and counts modulo 2 pi. Where the variable that stands for a joint
+has the scale ±1 and all rows turn whole multiples of it, `q + 2 pi` is the same configuration, and no
+smaller step is. With another scale the step is `2 pi / |scale|`: a whole turn of the joint is then
+another configuration, or one of several that are the same.
 """
 
 from __future__ import annotations
@@ -12,16 +12,20 @@ import math
 
 from ikgen.errors import UnsolvedChainError
 from ikgen.model.dh import DHChain, DHRow
+from ikgen.model.gear_ratio import MOST_PARTS, is_whole
 
-__all__ = ["check_couplings", "middle_of", "turns_freely"]
+__all__ = ["check_couplings", "middle_of", "most_parts", "range_of", "turns_freely"]
 
 _WHOLE = 1e-12
+
+_BEYOND = 1e-2
+"""How far (rad) beyond its limits values of a joint are looked for: poses that lie on them have rows."""
 
 
 def turns_freely(dh: DHChain, joint: int) -> bool:
     """Whether two values of the joint are the same configuration exactly where whole turns are between."""
     rows = _rows(dh, joint)
-    whole = all(abs(row.scale - round(row.scale)) <= _WHOLE for row in rows)
+    whole = all(is_whole(row.scale) for row in rows)
     lead = dh.lead_row(joint)
     return lead.revolute and abs(lead.scale) == 1.0 and whole
 
@@ -34,6 +38,27 @@ def middle_of(dh: DHChain, joint: int) -> float:
     if not row.revolute or turns_freely(dh, joint) or not math.isfinite(span):
         return 0.0
     return limits.lower + 0.5 * span
+
+
+def range_of(dh: DHChain, joint: int) -> tuple[float, float]:
+    """Where values of a joint's DH variable (rad) are looked for: on the whole circle, or, where several
+    turns of the joint are on it and its rows do not turn alike, one about the middle of the limits, and the
+    limits."""
+    lead, limits = dh.lead_row(joint), dh.joints[joint].limits
+    half, span = math.pi * abs(lead.scale), limits.upper - limits.lower
+    if math.isfinite(span):
+        half = max(half, (0.5 * span + _BEYOND) * abs(lead.scale))
+    alike = all(abs(dh.follows(row)[0]) == 1.0 for row in _rows(dh, joint))
+    if alike or half >= math.pi * (1.0 - _WHOLE):
+        return -math.pi, math.pi
+    middle = lead.scale * middle_of(dh, joint) + lead.offset.value
+    return middle - half, middle + half
+
+
+def most_parts(dh: DHChain) -> int:
+    """How many times the variable that stands for a joint the fastest row turns, of all joints that
+    turn."""
+    return max((round(abs(dh.follows(row)[0])) for row in dh.rows if row.revolute), default=1)
 
 
 def check_couplings(dh: DHChain) -> None:
@@ -67,12 +92,14 @@ def _cause(dh: DHChain, joint: int, rows: tuple[DHRow, ...]) -> tuple[str, str] 
             text = f"of {names} one turns and the other slides, so the equations are not algebraic"
             return text, ends
         ratio = row.scale / lead.scale
-        if row.revolute and abs(ratio - round(ratio)) > _WHOLE:
+        if row.revolute and not is_whole(ratio):
             text = (
-                f"{names} turn in the ratio {abs(lead.scale):g} : {abs(row.scale):g}, and closed forms "
-                "need one to be a whole multiple of the other"
+                f"{names} turn in the ratio {abs(lead.scale):.9g} : {abs(row.scale):.9g}, and closed forms "
+                f"need a ratio of whole numbers up to {MOST_PARTS:,}"
             )
-            return text, ends
+            own = dh.joints[joint].name
+            follower = lead.name if row.name == own else row.name
+            return text, f"--couple {follower}={own}*k with fewer digits"
     limits, held = dh.joints[joint].limits, dh.joints[joint].name in dh.free
     if not lead.revolute or held or turns_freely(dh, joint):
         return None

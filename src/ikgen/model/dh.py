@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from ikgen.model.chain import REVOLUTE, ActuatedJoint
+from ikgen.model.gear_ratio import common_share, is_whole
 from ikgen.model.joint_tree import Limits, Matrix
 from ikgen.model.transmission import Transmission
 
@@ -212,7 +213,19 @@ class DHChain:
 
     def lead_row(self, joint: int) -> DHRow:
         """The row whose variable stands for a joint: the first of those that it moves least, so that the
-        others turn a whole number of times as far where closed forms are to be had."""
-        return min(
-            (row for row in self.rows if row.driver == joint), key=lambda row: abs(row.scale)
-        )
+        others turn a whole number of times as far; where they do not, that row with the share of its turn
+        of which all turn whole multiples."""
+        rows = [row for row in self.rows if row.driver == joint]
+        least = min(rows, key=lambda row: abs(row.scale))
+        share = common_share([row.scale / least.scale for row in rows]) if least.revolute else 1
+        if share == 1:
+            return least
+        return replace(least, scale=least.scale / share, offset=Angle(0.0, Fraction(0)))
+
+    def follows(self, row: DHRow) -> tuple[float, float]:
+        """How the row's variable follows that of its joint: `ratio * v + shift` (rad or m)."""
+        lead = self.lead_row(row.driver)
+        ratio = row.scale / lead.scale
+        if row.revolute and is_whole(ratio):
+            ratio = float(round(ratio))
+        return ratio, row.offset.value - ratio * lead.offset.value

@@ -57,6 +57,7 @@ class Call:
     |---|---|---|
     | `trig_quartic` | a2, b2, a1, b1, a0 | c, s: cosine and sine of a root |
     | `trig_quartic_wide` | these, and the largest imaginary part (rad) of roots that count | the same |
+    | `trig_polynomial` | see `TrigPolynomial.lower` | the same |
     | `general_6r` | pose, held joints | six revolute joints |
     | `one_slide` | pose, held joints | five revolute joints and a slide |
     | `one_slide_both` | pose, held joints | the same where half angles of one angle leave no rank |

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from fractions import Fraction
 from itertools import pairwise
@@ -62,7 +63,7 @@ def _table(dh: DHChain) -> Rows:
     rows = tuple(
         (
             (str(i),), (row.name,), (_angle(row.alpha),), (_length(row.a),),
-            (_d(row),), (_theta(row),),
+            (_d(dh, row),), (_theta(dh, row),),
         )
         for i, row in enumerate(dh.rows, start=1)
     )  # fmt: skip
@@ -95,20 +96,19 @@ def _length(a: Length) -> Math:
     return m.minus(sign=True) + s if a.sign < 0 else s
 
 
-def _driven(row: DHRow, letter: str) -> Math:
-    """The variable of the row's joint, with its factor where the row follows another joint."""
+def _driven(dh: DHChain, row: DHRow, letter: str) -> Math:
+    """The row's variable by that of its joint."""
+    ratio, shift = dh.follows(row)
     v = m.name(letter, str(row.driver + 1))
-    if abs(row.scale) not in (0.0, 1.0):
-        return m.number(abs(row.scale)) + m.space() + v
-    return v
+    return _linear([(ratio, v)], shift, turns=row.revolute)
 
 
-def _d(row: DHRow) -> Math:
-    return _length(row.d) if row.revolute else _driven(row, "d")
+def _d(dh: DHChain, row: DHRow) -> Math:
+    return _length(row.d) if row.revolute else _driven(dh, row, "d")
 
 
-def _theta(row: DHRow) -> Math:
-    return _driven(row, "theta") if row.revolute else _angle(row.theta)
+def _theta(dh: DHChain, row: DHRow) -> Math:
+    return _driven(dh, row, "theta") if row.revolute else _angle(row.theta)
 
 
 def _parameters(dh: DHChain) -> Rows | None:
@@ -139,9 +139,9 @@ def _ends(dh: DHChain, task: Task) -> list[Block]:
             "the whole pose."
         )
         out.insert(0, Paragraph((f"The pose in what follows is {pose}",)))
-    shifted = [row for row in dh.rows if row.scale != 1.0 or row.offset.value]
-    if shifted:
-        lines = [_conversion(row, dh) for row in shifted]
+    leads = [dh.lead_row(joint) for joint in range(dh.dof)]
+    lines = [_conversion(row) for row in leads if row.scale != 1.0 or row.offset.value]
+    if lines:
         out += [
             Paragraph(("The variables of the table from the joint values q:",)),
             Formulas(tuple(lines)),
@@ -165,33 +165,26 @@ def _motors(dh: DHChain) -> list[Block]:
     return [Paragraph((text,)), Formulas(tuple(lines))]
 
 
-def _linear(terms: Sequence[tuple[float, Math]], constant: float) -> Math:
-    """A sum of multiples and a number."""
+def _linear(terms: Sequence[tuple[float, Math]], constant: float, *, turns: bool = False) -> Math:
+    """A sum of multiples and a number; that as a multiple of pi where it `turns` and is one of pi/12."""
     out = Math(())
     for k, what in [*terms, *([(constant, Math(()))] if constant else [])]:
         sign = m.minus(sign=not out.tokens) if k < 0 else m.plus() if out.tokens else Math(())
         bare = not what.tokens
         size = m.number(abs(k)) if bare or abs(k) != 1.0 else Math(())
+        part = Fraction(round(12.0 * abs(k) / math.pi), 12)
+        if bare and turns and math.isclose(abs(k), float(part) * math.pi, rel_tol=1e-15):
+            size = _turns(part)
         gap = m.space() if size.tokens and not bare else Math(())
         out = out + sign + size + gap + what
     return out
 
 
-def _conversion(row: DHRow, dh: DHChain) -> Math:
-    letter = "theta" if row.revolute else "d"
-    right = Math(())
-    sign = m.minus(sign=True) if row.scale < 0 else Math(())
-    size = m.number(abs(row.scale)) if abs(row.scale) != 1.0 else Math(())
-    right = right + sign + size + m.name("q", str(row.driver + 1))
-    offset = row.offset
-    if offset.value:
-        right = right + (m.plus() if offset.value > 0 else m.minus())
-        if isinstance(offset, Angle) and offset.exact is not None:
-            right = right + _turns(abs(offset.exact))
-        else:
-            right = right + m.number(abs(offset.value))
-    place = dh.rows.index(row) + 1
-    return m.name(letter, str(place)) + m.relation() + right
+def _conversion(row: DHRow) -> Math:
+    """A joint's variable by its value, of the row that leads it."""
+    letter, place = "theta" if row.revolute else "d", str(row.driver + 1)
+    right = _linear([(row.scale, m.name("q", place))], row.offset.value, turns=row.revolute)
+    return m.name(letter, place) + m.relation() + right
 
 
 def _numbers(T: Array) -> tuple[tuple[Math, ...], ...]:

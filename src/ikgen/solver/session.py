@@ -155,6 +155,8 @@ class Session:
         return step
 
     def _wanted(self, candidate: Candidate) -> bool:
+        if self.knowledge.leaves_parts(candidate.unknown):
+            return False
         passed = candidate.unknown in self.passed_over
         return not passed or candidate.branches == 1 or first_fork(self.steps) is not None
 

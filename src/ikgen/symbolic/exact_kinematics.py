@@ -86,9 +86,8 @@ class ExactKinematics:
 
     def _motion(self, row: DHRow) -> Rows:
         """`Rz(theta) Tz(d)`"""
-        r, lead = self.ring, self.dh.lead_row(row.driver)
-        ratio = row.scale / lead.scale
-        shift = row.offset.value - ratio * lead.offset.value
+        r = self.ring
+        ratio, shift = self.dh.follows(row)
         if row.revolute:
             start = self._numbers(shift)
             c, s = r.turned(start, r.pair(f"theta{row.driver}"), round(ratio))

@@ -12,6 +12,7 @@ from typing import TypeAlias
 
 import sympy
 
+from ikgen.errors import UsageError
 from ikgen.forms.form import Form
 from ikgen.forms.linear_form import Linear
 from ikgen.forms.pair_form import LinearPair
@@ -19,7 +20,9 @@ from ikgen.forms.quadratic_form import Quadratic
 from ikgen.forms.quartic_form import TrigQuartic
 from ikgen.forms.sine_cosine_form import SineCosine
 from ikgen.forms.tangent_form import Tangent
+from ikgen.forms.trig_polynomial_form import TrigPolynomial
 from ikgen.symbolic.lowered_view import LoweredView
+from ikgen.symbolic.trig_polynomial_root import MOST_DEGREE, TrigPolynomialRoot
 from ikgen.symbolic.trig_quartic_root import TrigQuarticRoot
 
 __all__ = ["Alternatives", "alternatives"]
@@ -49,7 +52,12 @@ class Alternatives:
 
 
 def alternatives(form: Form, coefficients: Sequence[Expression]) -> Alternatives:
-    """The form's alternatives with these coefficients, in the order of the form's branches."""
+    """The form's alternatives with these coefficients, in the order of the form's branches.
+
+    Raises `UsageError` for a trigonometric polynomial of too high a degree.
+    """
+    if isinstance(form, TrigPolynomial):
+        return _trig_polynomial(form, coefficients)
     textbook = _TEXTBOOK.get(type(form))
     return textbook(*coefficients) if textbook else _as_lowered(form, coefficients)
 
@@ -96,6 +104,19 @@ def _quartic(
 ) -> Alternatives:
     values = tuple(TrigQuarticRoot(a2, b2, a1, b1, a0, k) for k in range(4))
     return Alternatives(values, a2**2 + b2**2)
+
+
+def _trig_polynomial(form: TrigPolynomial, coefficients: Sequence[Expression]) -> Alternatives:
+    if max(form.harmonics) > MOST_DEGREE:
+        raise UsageError(
+            f"a trigonometric polynomial of degree {max(form.harmonics):,} has no roots in SymPy's numbers",
+            hint="leave the SymPy output out; the emitted solvers find the roots",
+        )
+    *parts, constant = coefficients
+    triples = zip(form.harmonics, parts[::2], parts[1::2], strict=True)
+    terms = [x for triple in triples for x in triple]
+    values = [TrigPolynomialRoot(k, *form.span, constant, *terms) for k in range(form.branches)]
+    return Alternatives(tuple(values), sum((x**2 for x in parts), sympy.S.Zero))
 
 
 def _as_lowered(form: Form, coefficients: Sequence[Expression]) -> Alternatives:

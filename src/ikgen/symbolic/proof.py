@@ -5,9 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+from ikgen.kinematics.whole_turns import most_parts
 from ikgen.solver.solution_graph import SolutionGraph
 from ikgen.symbolic.form_proofs import FormProof, kinds_of, prove_form
 from ikgen.symbolic.identities import Identity, prove_identities
+from ikgen.symbolic.trig_polynomial_root import MOST_DEGREE
 
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Derivation
@@ -86,6 +88,12 @@ def prove(derivation: Derivation) -> Proof:
         return Proof(
             reason="the elimination solves a polynomial in floating-point numbers; "
             "its rows are checked by forward kinematics, one by one"
+        )
+    parts = most_parts(derivation.graph.dh)
+    if parts > MOST_DEGREE:
+        return Proof(
+            reason=f"gears make polynomials of degree {parts:,}, too long to be multiplied out; rows are "
+            "checked by forward kinematics, one by one"
         )
     return prove_graph(derivation.graph)
 

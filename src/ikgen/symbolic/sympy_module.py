@@ -16,6 +16,7 @@ from ikgen.symbolic.exact_numbers import exact_number
 from ikgen.symbolic.joint_solutions import solutions
 from ikgen.symbolic.matrix_equations import equations
 from ikgen.symbolic.symbol_names import SymbolNames
+from ikgen.symbolic.trig_polynomial_root import TrigPolynomialRoot
 from ikgen.symbolic.trig_quartic_root import TrigQuarticRoot
 
 if TYPE_CHECKING:
@@ -48,16 +49,14 @@ def module_text(derivation: Derivation) -> str:
     found = solutions(derivation)
     equal = equations(derivation)
     expressions = [b.expression for branches in found.values() for b in branches]
-    quartic = any(e.has(TrigQuarticRoot) for e in expressions)
+    roots = [f for f in (TrigQuarticRoot, TrigPolynomialRoot) if any(e.has(f) for e in expressions)]
     return render(
         "sympy",
         "solution.py.jinja",
         name=derivation.module.name,
         version=__version__,
         source=derivation.module.source_name,
-        quartic=inspect.getsource(TrigQuarticRoot).replace("  # type: ignore[misc]", "")
-        if quartic
-        else "",
+        roots=[inspect.getsource(f).replace("  # type: ignore[misc]", "") for f in roots],
         symbols=_symbols(names, found, dh),
         constants=_constants(names, dh),
         held=_held(derivation, names),
@@ -115,8 +114,8 @@ def _joint(dh: DHChain, names: SymbolNames, joint: int) -> str:
 
 
 def _row(row: DHRow, dh: DHChain, names: SymbolNames) -> str:
+    ratio = exact_number(dh.follows(row)[0]).sympy
     lead = dh.lead_row(row.driver)
-    ratio = exact_number(row.scale / lead.scale).sympy
     shift = _value(row.offset, names) - ratio * _value(lead.offset, names)
     variable = ratio * names.joint(row.driver) + shift
     theta, d = (variable, _value(row.d, names)), (_value(row.theta, names), variable)

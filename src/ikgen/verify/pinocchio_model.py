@@ -18,6 +18,8 @@ from ikgen.verify.screws import ScrewChain
 
 __all__ = ["Oracle", "load_pinocchio"]
 
+_WHOLE = 1e-12
+
 Array = NDArray[np.float64]
 
 
@@ -72,12 +74,19 @@ class Oracle:
     @property
     def period(self) -> Array:
         """(dof,): the least step (rad) between values of a joint that are the same configuration: a whole
-        turn, more or less where only mimic joints turn with it; infinite where there is none."""
+        turn, more or less where only mimic joints turn with it; infinite where there is none, or where it
+        is more than a turn and what turns does not do so alike."""
         A = np.abs(self.screws.A)
         least = np.min(np.where(A > 0.0, A, np.inf), axis=0, initial=np.inf)
         least = np.where(np.isinf(least), 1.0, least)  # a joint that moves nothing
-        whole = np.all(np.abs(A / least - np.round(A / least)) <= 1e-12, axis=0)
-        return np.asarray(np.where(self.revolute & whole, 2.0 * np.pi / least, np.inf))
+        alike = np.all((A == 0.0) | (np.abs(A / least - 1.0) <= _WHOLE), axis=0)
+        period = np.where(self.revolute & alike, 2.0 * np.pi / least, np.inf)
+        for turns in range(int(np.max(least, initial=0.0) + _WHOLE), 0, -1):
+            rows = turns * A / least
+            whole = np.all(np.abs(rows - np.round(rows)) <= _WHOLE, axis=0)
+            short = turns <= least + _WHOLE
+            period = np.where(self.revolute & whole & short, 2.0 * np.pi * turns / least, period)
+        return np.asarray(period)
 
     def _wire(self, wiring: Mapping[str, tuple[int, float, float]]) -> None:
         joints = list(self._model.names)[1:]

@@ -22,6 +22,9 @@ _POINT = 1e-6
 
 def _candidates(arm: ArmUnderTest, j: int) -> Array:
     """Values of joint j whose distances determine the best one, or among which it is sought."""
+    if arm.revolute[j] and not np.isfinite(arm.period[j]):
+        turn = 2 * np.pi
+        return np.linspace(arm.low[j] - turn, arm.high[j] + turn, 216)
     if not np.isfinite(arm.period[j]):
         return np.array([arm.low[j], arm.high[j]])
     simple = np.count_nonzero(arm.screws.A[:, j]) == 1 and arm.period[j] == 2 * np.pi
@@ -32,8 +35,9 @@ def _candidates(arm: ArmUnderTest, j: int) -> Array:
 def _improve(arm: ArmUnderTest, q: Array, j: int) -> Array:
     """Set joint j of each q (N, dof) to where the tip is farthest from the base, the others held.
 
-    The squared distance is `a + b cos + c sin` of a simple revolute joint's value (three values
-    give it), and convex in a prismatic one's; for the driver of mimic joints a grid is searched.
+    The squared distance is `a + b cos + c sin` of a simple revolute joint's value (three values give it),
+    and convex in a prismatic one's; for the driver of mimic joints a grid is searched, of one whose turns
+    are all different a turn beyond its limits.
     """
     values = _candidates(arm, j)
     tried = np.repeat(q[:, None], len(values), axis=1)

@@ -69,13 +69,16 @@ def find_solutions(
     """Solutions of each target (P, 4, 4), each (k, dof), found from `starts` random starts per
     target.
 
-    `held` (P, dof): configurations from which the free joints' values are taken. Several starts may
-    end in one solution; duplicates stay.
+    `held` (P, dof): configurations from which the free joints' values are taken. Several starts may end
+    in one solution; duplicates stay. A joint whose turns are all different, as of one that drives others
+    by a gear of 5 : 4, takes values inside its limits.
     """
     q = arm.uniform(rng, len(targets) * starts, limits=False)
     owner = np.repeat(np.arange(len(targets)), starts)
     free = list(arm.free)
     q[:, free] = held[owner][:, free]
     q, done = converge(arm, q, arm.aims(held, targets)[owner])
+    single = arm.revolute & ~np.isfinite(arm.period)
+    done &= np.all(~single | ((q >= arm.low) & (q <= arm.high)), axis=1)
     done &= arm.held_off(q, held[owner], targets[owner]) < _HELD
     return [q[done & (owner == i)] for i in range(len(targets))]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from ikgen.emit.blanks import blanks, pairs
@@ -17,7 +18,6 @@ from ikgen.emit.gear_text import gear_text
 from ikgen.emit.printer import expression
 from ikgen.emit.rendering import render
 from ikgen.emit.solver_module import SolverModule
-from ikgen.errors import UsageError
 from ikgen.kinematics.column_blocks import column_blocks
 from ikgen.program.margins import fold_margins
 from ikgen.program.ops import Op
@@ -53,28 +53,33 @@ def emit(module: SolverModule) -> dict[str, str]:
 
 
 def emit_header(module: SolverModule) -> str:
-    """The text of `<name>_ik.hpp`.
-
-    Raises UsageError for a Program whose levels have a number of branches that is no power of two.
-    """
+    """The text of `<name>_ik.hpp`."""
+    most, module = module.max_solutions, _in_packs(module)
     branches = [level.branches for level in module.program.levels[1:]]
-    if any(n & (n - 1) for n in branches):
-        what = f"the C++ emitter needs levels of 2, 4, ... branches, not {branches}"
-        raise UsageError(what, hint="emit Python alone, or have the leaf give 2, 4, ... branches")
-    shell = _shell(module, branches)
+    shell = _shell(module, branches, most)
     runtime = bundle_for(shell, _known_facts(module), _headers(module), _SYSTEM)
     lines = policy_lines(module.policy, runtime.body)
     with_policy = shell.replace(_POLICY, "\n  ".join(lines)).replace(_INCLUDES, runtime.includes)
     return with_policy.replace(_RUNTIME, runtime.body)
 
 
-def _shell(module: SolverModule, branches: list[int]) -> str:
+def _in_packs(module: SolverModule) -> SolverModule:
+    """The module with lanes in powers of two: those that a routine's roots leave over stay empty."""
+    levels = tuple(
+        replace(level, branches=1 << (level.branches - 1).bit_length())
+        for level in module.program.levels
+    )
+    return replace(module, program=replace(module.program, levels=levels))
+
+
+def _shell(module: SolverModule, branches: list[int], most: int) -> str:
     """The text around the runtime, and marks where that goes."""
     program, text = module.program, ProgramText(module)
     return render(
         "cpp",
         "header.hpp.jinja",
         m=module,
+        most=most,
         **_namespaces(module),
         includes=_INCLUDES,
         runtime=_RUNTIME,
@@ -178,6 +183,7 @@ def _headers(module: SolverModule) -> list[str]:
 
 _ROUTINES = {
     "general_6r": "elimination/general_6r_arm.hpp",
+    "trig_polynomial": "roots/trig_polynomial.hpp",
     "trig_quartic": "roots/trig_quartic.hpp",
     "trig_quartic_wide": "roots/trig_quartic_wide.hpp",
 }

@@ -17,6 +17,7 @@ from ikgen.solver.leaves import (
     simultaneous,
     sine_and_cosine,
     tangent,
+    trig_polynomial,
     trig_quartic,
 )
 
@@ -61,6 +62,10 @@ LEAVES: tuple[Leaf, ...] = (
     Leaf("quartic", trig_quartic.find, {
         "quartic": "Two equations of degree two in cosine and sine meet in up to four points of the unit "
         "circle: up to four angles.",
+    }),
+    Leaf("trigonometric polynomial", trig_polynomial.find, {
+        "trigonometric polynomial": "One equation in multiples of the unknown, as joints leave it that are "
+        "geared to each other: its roots are found one by one.",
     }),
 )  # fmt: skip
 """In the order of preference, among candidates of as many branches."""

@@ -88,9 +88,10 @@ def chain_of(frames: Array, motions: tuple[Motion, ...], dof: int) -> Chain:
 
 def _turns_freely(motions: Sequence[Motion]) -> bool:
     """Whether a joint's values are the same configuration where they differ by whole turns, and only
-    there: not with a motion that turns by another ratio."""
-    _, turning, ratio, _ = motions[0]
-    return turning and abs(ratio) == 1.0 and all(abs(m[2] - round(m[2])) < 1e-12 for m in motions)
+    there: not where its motions have come round together before, or have not then."""
+    turns = [round(m[2]) for m in motions]
+    whole = all(m[1] and abs(m[2] - n) < 1e-12 for m, n in zip(motions, turns, strict=True))
+    return whole and bool(np.gcd.reduce(turns) == 1)
 
 
 def link_motions(chain: Chain, parts: Array, q: Array) -> Array:
