@@ -74,7 +74,7 @@ def test_a_ratio_that_leaves_no_closed_form_is_told_by_every_command(
     robot, out = tmp_path / "arm.urdf", tmp_path / "out"
     robot.write_text(serial_urdf("arm", SHOULDER_ELBOW_WRIST))
     name = SHOULDER_ELBOW_WRIST[1][0]
-    asked = [command, str(robot), "--couple", f"{SHOULDER_ELBOW_WRIST[2][0]}={name}*0.37"]
+    asked = [command, str(robot), "--couple", f"{SHOULDER_ELBOW_WRIST[2][0]}={name}*0.500000001"]
     assert run([*asked, "-o", str(out), "-q"]) == 3
     said = capsys.readouterr().err
     assert f"no closed form for the mimic joints of '{name}'" in said and f"--lock {name}" in said

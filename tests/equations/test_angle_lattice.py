@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.support.tables import table
+from tests.support.tables import geared, table
 
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.algebra.polynomial import AngleCombination, canonical
@@ -50,6 +50,17 @@ def lattice_of(solved: list[AngleCombination]) -> AngleLattice:
         lattice.add(combination)
     lattice.rebuild()
     return lattice
+
+
+def test_multiples_of_a_geared_angle_stay_multiples_of_it() -> None:
+    """3v is the sum of all but for u + v + w, too, where u + 4v + w is known."""
+    graph = ExpressionGraph(len(ANGLES))
+    arm = geared(table(*[("R", "0", 0.3, 0.0)] * 4))
+    lattice = AngleLattice(graph, JointVariables(graph, arm, ANGLES[:, :3]))
+    lattice.add((1, 4, 1))
+    lattice.rebuild()
+    for times in (2, 3, 4):
+        assert lattice.represent((0, times, 0)) == (times, (0, 1, 0), (0, 0, 0))
 
 
 def test_what_would_leave_parts_of_a_turn_is_told() -> None:

@@ -12,6 +12,7 @@ from hypothesis import settings
 from hypothesis import strategies as st
 from tests.support.probed import given, sign
 
+from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.forms.form import Form, scales
 from ikgen.forms.linear_form import Linear
@@ -21,6 +22,8 @@ from ikgen.forms.quadratic_form import Quadratic
 from ikgen.forms.quartic_form import TrigQuartic
 from ikgen.forms.sine_cosine_form import SineCosine
 from ikgen.forms.tangent_form import Tangent
+from ikgen.forms.trig_polynomial_form import TrigPolynomial
+from ikgen.runtime.python.roots.trig_polynomial_roots import trig_polynomial_branches
 from ikgen.runtime.python.roots.trig_quartic_roots import trig_quartic, trig_quartic_branches
 
 PROBES = 8
@@ -81,6 +84,23 @@ def _quartic_rest(e: Sequence[Array], v: Values) -> Array:
     return e[0] * (c * c - s * s) + e[1] * 2 * s * c + e[2] * c + e[3] * s + e[4]
 
 
+class ThreeTerms(TrigPolynomial):
+    """Of the harmonics 1, 3 and 4 on the circle."""
+
+    def __init__(self, *terms: Expr) -> None:
+        super().__init__(terms, (1, 3, 4), (-np.pi, np.pi))
+
+
+def _trig_polynomial(rng: np.random.Generator, u: Array) -> Sequence[Array]:
+    terms = list(_random(rng, 6))
+    return *terms, -_three_terms([*terms, 0.0 * u], u)
+
+
+def _three_terms(e: Sequence[Array], u: Array) -> Array:
+    parts = [(n, e[2 * i], e[2 * i + 1]) for i, n in enumerate((1, 3, 4))]
+    return np.asarray(sum(a * np.cos(n * u) + b * np.sin(n * u) for n, a, b in parts) + e[6])
+
+
 PATTERNS = {
     p.form.name: p
     for p in (
@@ -96,11 +116,12 @@ PATTERNS = {
             ),
         ),
         Pattern(TrigQuartic, _quartic, _quartic_rest),
+        Pattern(ThreeTerms, _trig_polynomial, lambda e, v: _three_terms(e, np.arctan2(v[1], v[0]))),
     )
 }
 NAMES = sorted(PATTERNS)
-RUNG = [n for n in NAMES if n != TrigQuartic.name]
-"""Those that are lowered to expressions; the quartic is to a routine."""
+RUNG = [n for n in NAMES if n not in (TrigQuartic.name, TrigPolynomial.name)]
+"""Those that are lowered to expressions; the others are to a routine."""
 
 
 def filled(name: str, seed: int) -> tuple[ExpressionGraph, Form, Values, Array]:
@@ -346,3 +367,37 @@ def test_a_quartic_of_rounded_geometry_is_handed_how_far_a_root_may_be_complex()
         assert found.arguments[5].value == pytest.approx(wanted)
     exact = form.lower(graph, graph.one, Tolerances.for_model_error(1e-12))
     assert isinstance(exact, LoweredRoutine) and exact.routine == "trig_quartic"
+
+
+@settings(deadline=None)
+@property_of(st.floats(-3.1, 3.1))
+def test_a_trig_polynomial_s_instead_has_the_seed_as_a_root(seed: float) -> None:
+    graph, form, _, _ = filled(TrigPolynomial.name, 3)
+    pair = tuple(given(graph, np.full(PROBES, f(seed))) for f in (np.cos, np.sin))
+    found = form.lower(graph, graph.one, Tolerances())
+    instead = [*form.instead(graph, pair), *found.arguments[len(form.coefficients) :]]
+    roots = trig_polynomial_branches(*(float(e.probe[0]) for e in instead))
+    assert min(abs(np.hypot(c - np.cos(seed), s - np.sin(seed))) for c, s in roots) < 1e-9
+
+
+def test_a_trig_polynomial_is_handed_to_its_routine_with_its_interval() -> None:
+    graph, form, truth, u = filled(TrigPolynomial.name, 5)
+    found = form.lower(graph, graph.one, Tolerances())
+    assert isinstance(found, LoweredRoutine) and found.routine == "trig_polynomial"
+    numbers = [float(e.probe[0]) for e in found.arguments[7:]]
+    assert numbers == [1.0, 3.0, 4.0, -np.pi, np.pi, 1e-3, 6.0 + 2.0]
+    wide = form.lower(graph, graph.one, Tolerances.for_model_error(1e-4)).arguments[-2]
+    assert 1e-3 < float(wide.probe[0]) <= 0.1
+    pair = tuple(given(graph, x) for x in truth)
+    (left,), slope = form.pattern(graph, pair), form.slope(graph, pair)
+    assert np.abs(left.probe).max() < 1e-12
+    h, e = 1e-6, form.probe
+    about = (_three_terms(e, u + h) - _three_terms(e, u - h)) / (2 * h)
+    np.testing.assert_allclose(slope.probe, about, atol=1e-7)
+    sizes = 4.0 * np.abs(np.stack(e)).max(axis=0)
+    np.testing.assert_allclose(form.steepness(truth), np.abs(about) / sizes, atol=1e-7)
+    for i in range(PROBES):
+        roots = trig_polynomial_branches(*(float(x.probe[i]) for x in found.arguments))
+        expected = np.array(form.values(e))[:, :, i]
+        expected = expected[np.isfinite(expected[:, 0])]
+        np.testing.assert_allclose(roots, expected, atol=1e-9)

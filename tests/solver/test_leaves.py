@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from tests.support.solving import emitted
-from tests.support.tables import Row, table
+from tests.support.tables import Row, geared, table
 
 from ikgen.equations.probes import dh_pose
 from ikgen.importers.dh.dh_table import read_dh_table
@@ -71,6 +71,7 @@ def test_without_its_leaf_an_arm_stays_open(leaf: str, case: str) -> None:
 def test_every_leaf_solves_some_arm() -> None:
     chains = [table(*rows) for _, rows in CASES.values()]
     chains.append(read_dh_table(TABLES / "Wachtveitl.toml", free=(), locked={})[1])
+    chains.append(geared(table(*CASES["planar arm"][1], ("R", "0", 0.2, 0.0))))
     assert {leaf.name for leaf in LEAVES} <= {
         step.candidate.leaf for dh in chains for step in solve_chain(dh).steps
     }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -10,7 +11,7 @@ from ikgen.model.chain import PRISMATIC, REVOLUTE, ActuatedJoint
 from ikgen.model.dh import Angle, DHChain, DHRow, Length
 from ikgen.model.joint_tree import Limits
 
-__all__ = ["Row", "table"]
+__all__ = ["Row", "geared", "table"]
 
 Row = tuple[str, str, float, float]
 
@@ -39,3 +40,11 @@ def table(*rows: Row) -> DHChain:
         frames.append(after)
     eye = np.eye(4)
     return DHChain("arm", "base", "tip", tuple(joints), tuple(made), eye, eye, tuple(frames))
+
+
+def geared(dh: DHChain) -> DHChain:
+    """The chain whose third row turns three times as far as its second, as one joint."""
+    places = [0, 1, 1, *range(2, dh.dof - 1)]
+    rows = [replace(row, driver=place) for row, place in zip(dh.rows, places, strict=True)]
+    rows[2] = replace(rows[2], scale=3.0)
+    return replace(dh, rows=tuple(rows), joints=(*dh.joints[:2], *dh.joints[3:]))

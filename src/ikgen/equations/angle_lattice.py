@@ -10,7 +10,7 @@ import numpy as np
 from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.algebra.polynomial import AngleCombination
-from ikgen.equations.known_combinations import KnownCombinations
+from ikgen.equations.known_combinations import LARGEST, KnownCombinations
 from ikgen.equations.variables import JointVariables
 
 __all__ = ["AngleLattice"]
@@ -101,6 +101,13 @@ class AngleLattice:
         group = self._variables.group_of(combination)
         zero = tuple([0] * self._variables.count)
         result = (1, combination, zero)
+        times = int(np.gcd.reduce(combination))
+        if times > 1 and self._variables.largest_factor > LARGEST:
+            # a multiple as gears make it: of the unknown itself, however it could be written with others
+            rep = tuple(k // times for k in combination)
+            if rep in self._representatives and rep not in self.known:
+                self._represented[combination] = (times, rep, zero)
+                return times, rep, zero
         for factor in (1, -1, 2, -2):
             for rep in self._representatives:
                 if self._variables.group_of(rep) != group:
