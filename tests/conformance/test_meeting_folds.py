@@ -63,6 +63,7 @@ joints = [
 
 
 @pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "compiles")
+@pytest.mark.long
 def test_a_root_of_what_a_double_root_leaves_is_taken(tmp_path: Path) -> None:
     """Of exact geometry: where one root is a double one, what the next is taken of has half the digits."""
     path = tmp_path / "folding.toml"

@@ -48,6 +48,7 @@ def test_all_are_found_where_the_wrist_is_not_rolled(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "compiles")
+@pytest.mark.long
 def test_a_root_that_is_one_of_a_fold_too_is_not_taken_for_one(tmp_path: Path) -> None:
     """Where the arm lies in a plane so, two solutions that meet have the angle of two regular ones."""
     module = derive(Request(FIXTURES / "fanuc_crx10ia.urdf", name="crx")).module
