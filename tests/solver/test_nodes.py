@@ -9,6 +9,7 @@ import pytest
 from tests.support.probed import given
 
 from ikgen.algebra.expression_graph import ExpressionGraph
+from ikgen.equations import matching
 from ikgen.equations.knowledge import Variable
 from ikgen.solver.behavior_tree import collect
 from ikgen.solver.leaves import simultaneous
@@ -41,7 +42,7 @@ def found(monkeypatch: pytest.MonkeyPatch, double: bool, alike: bool) -> list[tu
     equations = [SimpleNamespace(unknowns=(UNKNOWN,), sources=(name,)) for name in "abc"]
     equations.append(SimpleNamespace(unknowns=(UNKNOWN, UNKNOWN), sources=("d",)))
     of = {e.sources: h for e, h in zip(equations, terms, strict=False)}
-    monkeypatch.setattr(simultaneous, "harmonics", lambda e, unknown: of[e.sources])
+    monkeypatch.setattr(matching, "harmonics", lambda e, unknown: of[e.sources])
     pairs = simultaneous.find(equations, UNKNOWN, SimpleNamespace(graph=g))
     return [pair.sources for pair in pairs]
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from typing import TypeAlias
 
 from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
@@ -14,11 +16,14 @@ __all__ = [
     "constant_ratio",
     "contains",
     "harmonics",
+    "in_harmonics",
     "only_known",
     "powers",
     "proportional",
     "split_angle",
 ]
+
+Harmonics: TypeAlias = dict[tuple[int, str], Expr]
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,11 +68,9 @@ def contains(monomial: Monomial, unknown: Variable) -> bool:
     return any(joint == unknown.joint for joint, _ in slides)
 
 
-def harmonics(
-    equation: PolynomialEquation, unknown: Variable
-) -> dict[tuple[int, str], Expr] | None:
+def harmonics(equation: PolynomialEquation, unknown: Variable) -> Harmonics | None:
     """Coefficients by (harmonic, "c" or "s"), (0, "c") the constant; None where others occur."""
-    out: dict[tuple[int, str], Expr] = {}
+    out: Harmonics = {}
     for (trigs, slides), value in equation.polynomial.items():
         if slides or len(trigs) > 1:
             return None
@@ -79,6 +82,18 @@ def harmonics(
             return None
         out[max(map(abs, combination)) // max(map(abs, unknown.combination)), kind] = value
     return out
+
+
+def in_harmonics(
+    equations: Iterable[PolynomialEquation], unknown: Variable
+) -> Iterator[tuple[PolynomialEquation, Harmonics, int]]:
+    """The equations in an unknown angle alone, each with its `harmonics` and the highest of them."""
+    if unknown.kind != "angle":
+        return
+    for equation in equations:
+        found = harmonics(equation, unknown) if equation.unknowns == (unknown,) else None
+        if found is not None:
+            yield equation, found, max(k for k, _ in found)
 
 
 def powers(equation: PolynomialEquation, unknown: Variable) -> dict[int, Expr] | None:

@@ -10,7 +10,7 @@ import numpy as np
 
 from ikgen.algebra.expression import Expr
 from ikgen.equations.knowledge import Knowledge, PolynomialEquation, Variable
-from ikgen.equations.matching import harmonics
+from ikgen.equations.matching import in_harmonics
 from ikgen.forms.pair_form import LinearPair
 from ikgen.solver.candidate import Candidate
 
@@ -29,15 +29,10 @@ def find(
     equations: Sequence[PolynomialEquation], unknown: Variable, knowledge: Knowledge
 ) -> list[Candidate]:
     """Pairs of linear equations in the unknown alone with a determinant that does not vanish."""
-    if unknown.kind != "angle":
-        return []
     g = knowledge.graph
     linear: list[tuple[tuple[Expr, Expr, Expr], PolynomialEquation]] = []
-    for e in equations:
-        if e.unknowns != (unknown,):
-            continue
-        h = harmonics(e, unknown)
-        if h is None or max(k for k, _ in h) > 1:
+    for e, h, degree in in_harmonics(equations, unknown):
+        if degree > 1:
             continue
         row = (h.get((1, "c"), g.zero), h.get((1, "s"), g.zero), g.neg(h.get((0, "c"), g.zero)))
         linear.append((row, e))

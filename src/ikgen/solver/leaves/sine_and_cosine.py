@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ikgen.equations.knowledge import Knowledge, PolynomialEquation, Variable
-from ikgen.equations.matching import harmonics
+from ikgen.equations.matching import in_harmonics
 from ikgen.forms.sine_cosine_form import SineCosine
 from ikgen.forms.tangent_form import Tangent
 from ikgen.solver.candidate import Candidate
@@ -19,15 +19,10 @@ def find(
     equations: Sequence[PolynomialEquation], unknown: Variable, knowledge: Knowledge
 ) -> list[Candidate]:
     """Equations linear in the cosine and sine of the unknown alone."""
-    if unknown.kind != "angle":
-        return []
     g = knowledge.graph
     out: list[Candidate] = []
-    for e in equations:
-        if e.unknowns != (unknown,):
-            continue
-        h = harmonics(e, unknown)
-        if h is None or max(k for k, _ in h) > 1:
+    for e, h, degree in in_harmonics(equations, unknown):
+        if degree > 1:
             continue
         a, b, c = h.get((1, "c"), g.zero), h.get((1, "s"), g.zero), g.neg(h.get((0, "c"), g.zero))
         if c is g.zero:

@@ -10,7 +10,7 @@ import math
 from collections.abc import Sequence
 
 from ikgen.equations.knowledge import Knowledge, PolynomialEquation, Variable
-from ikgen.equations.matching import harmonics
+from ikgen.equations.matching import in_harmonics
 from ikgen.forms.trig_polynomial_form import TrigPolynomial
 from ikgen.kinematics.whole_turns import range_of
 from ikgen.solver.candidate import Candidate
@@ -22,15 +22,10 @@ def find(
     equations: Sequence[PolynomialEquation], unknown: Variable, knowledge: Knowledge
 ) -> list[Candidate]:
     """Equations of degree three and more in the cosine and sine of the unknown alone."""
-    if unknown.kind != "angle":
-        return []
     g = knowledge.graph
     out: list[Candidate] = []
-    for e in equations:
-        if e.unknowns != (unknown,):
-            continue
-        h = harmonics(e, unknown)
-        if h is None or max(k for k, _ in h) <= 2:
+    for e, h, degree in in_harmonics(equations, unknown):
+        if degree <= 2:
             continue
         found = tuple(sorted({k for k, _ in h} - {0}))
         terms = [h.get((k, kind), g.zero) for k in found for kind in "cs"]

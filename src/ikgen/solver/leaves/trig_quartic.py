@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ikgen.equations.knowledge import Knowledge, PolynomialEquation, Variable
-from ikgen.equations.matching import harmonics
+from ikgen.equations.matching import in_harmonics
 from ikgen.forms.quartic_form import TrigQuartic
 from ikgen.solver.candidate import Candidate
 
@@ -21,15 +21,10 @@ def find(
     equations: Sequence[PolynomialEquation], unknown: Variable, knowledge: Knowledge
 ) -> list[Candidate]:
     """Equations of degree two in the cosine and sine of the unknown alone."""
-    if unknown.kind != "angle":
-        return []
     g = knowledge.graph
     out: list[Candidate] = []
-    for e in equations:
-        if e.unknowns != (unknown,):
-            continue
-        h = harmonics(e, unknown)
-        if h is None or max(k for k, _ in h) != 2:
+    for e, h, degree in in_harmonics(equations, unknown):
+        if degree != 2:
             continue
         form = TrigQuartic(*(h.get(term, g.zero) for term in TERMS))
         out.append(Candidate(unknown, "quartic", form, e.sources))
