@@ -425,7 +425,7 @@ template <class X> inline void cross(const X* a, const X* b, X* out) noexcept {
   out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-template <class X, int N> inline void factor(X (&A)[N][N]) noexcept {
+template <class X, int N> inline void factor(X (&A)[N][N], double least = 1e-300) noexcept {
   using std::max;
   for (int i = 0; i < N; ++i) {
     X rest = A[i][i], row[N];
@@ -437,7 +437,7 @@ template <class X, int N> inline void factor(X (&A)[N][N]) noexcept {
       A[i][j] = row[j] * A[j][j];
       rest = rest - A[i][j] * row[j];
     }
-    A[i][i] = 1.0 / max(rest, 1e-300);
+    A[i][i] = 1.0 / max(rest, least);
   }
 }
 

@@ -15,8 +15,8 @@ template <class X> inline void cross(const X* a, const X* b, X* out) noexcept {
 }
 
 // The factors of A = L D L^T, symmetric and given up to its diagonal, in its place: L below the diagonal, the inverse of D
-// on it. X is double, or a pack of them.
-template <class X, int N> inline void factor(X (&A)[N][N]) noexcept {
+// on it, no less than `least` taken for D. X is double, or a pack of them.
+template <class X, int N> inline void factor(X (&A)[N][N], double least = 1e-300) noexcept {
   using std::max;
   for (int i = 0; i < N; ++i) {
     X rest = A[i][i], row[N];
@@ -28,7 +28,7 @@ template <class X, int N> inline void factor(X (&A)[N][N]) noexcept {
       A[i][j] = row[j] * A[j][j];
       rest = rest - A[i][j] * row[j];
     }
-    A[i][i] = 1.0 / max(rest, 1e-300);
+    A[i][i] = 1.0 / max(rest, least);
   }
 }
 

@@ -25,7 +25,7 @@ inline Square coupled_matrix(const Equations& eq) noexcept { return lift(make_pe
 
 inline double signed_determinant(Square& A) noexcept {
   std::array<Index, 12> pivot{};  // not all is written of a matrix that is singular
-  double det = factor(A, pivot);
+  double det = factor_by_rows(A, pivot);
   for (Index k = 0; k < 12; ++k) {
     if (pivot[k] != k) det = -det;
     if (A(k, k) < 0.0) det = -det;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "arrays/small_matrix.hpp"
 #include "elimination/general_6r_equations.hpp"
 #include "elimination/general_6r_solutions.hpp"
 
@@ -122,27 +123,21 @@ inline State residual(const Frames& F, const Frame& T, const Vector& q, const Tu
   return out;
 }
 
-// (J^T J + mu)^-1 x by Cholesky.
-inline Vector inverse_normal(const State& at, Vector x, double mu) noexcept {
-  Mat<6, 6> H{};
-  for (Index k = 0; k < 6; ++k)
-    for (Index i = 0; i < 6; ++i)
-      for (Index j = 0; j <= i; ++j) H(i, j) += at.J(k, i) * at.J(k, j);
+// (J^T J + mu)^-1 x
+inline Vector inverse_normal(const State& at, const Vector& x, double mu) noexcept {
+  double A[6][6], solved[6];
   for (Index i = 0; i < 6; ++i) {
-    H(i, i) += mu;
+    solved[i] = x[i];
     for (Index j = 0; j <= i; ++j) {
-      double sum = H(i, j);
-      for (Index k = 0; k < j; ++k) sum -= H(i, k) * H(j, k);
-      H(i, j) = i == j ? std::sqrt(std::max(sum, 1e-18)) : sum / H(j, j);
+      A[i][j] = i == j ? mu : 0.0;
+      for (Index k = 0; k < 6; ++k) A[i][j] += at.J(k, i) * at.J(k, j);
     }
-    for (Index k = 0; k < i; ++k) x[i] -= H(i, k) * x[k];
-    x[i] /= H(i, i);
   }
-  for (Index i = 6; i-- > 0;) {
-    for (Index k = i + 1; k < 6; ++k) x[i] -= H(k, i) * x[k];
-    x[i] /= H(i, i);
-  }
-  return x;
+  factor(A, 1e-18);
+  substitute(A, solved);
+  Vector out;
+  std::copy_n(solved, 6, out.begin());
+  return out;
 }
 
 inline Vector damped_step(const State& at, double mu) noexcept {

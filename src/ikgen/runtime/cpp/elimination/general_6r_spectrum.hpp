@@ -48,7 +48,7 @@ struct Resultant {  // singular at the solutions' theta_3
 inline Resultant lift(const Pencil& p) noexcept { return {lift(p.f), lift(p.c), lift(p.s)}; }
 
 // LU with partial pivoting in place; returns |determinant|.
-inline double factor(Square& A, std::array<Index, 12>& pivot) noexcept {
+inline double factor_by_rows(Square& A, std::array<Index, 12>& pivot) noexcept {
   double det = 1.0;
   for (Index k = 0; k < 12; ++k) {
     Index best = k;
@@ -145,7 +145,7 @@ inline void best_node(const Resultant& M, Node& out) noexcept {
     std::array<Index, 12> pivot;
     const double t = 2.0 * kPi / 7.0 * k, c = std::cos(t), s = std::sin(t);
     lu = M.at(-c, -s);
-    const double determinant = factor(lu, pivot);
+    const double determinant = factor_by_rows(lu, pivot);
     if (determinant > out.determinant) out = {t, c, s, determinant, lu, pivot};
   }
 }
