@@ -67,7 +67,7 @@ def test_unknown_joints_are_refused_with_those_that_there_are(tmp_path: Path) ->
 
 
 def test_limits_that_leave_nothing_are_refused() -> None:
-    with pytest.raises(UsageError, match="no value of 'a'"):
+    with pytest.raises(UsageError, match="no range of values of 'a'"):
         shared_limits(Mimic("a", 1.0, 5.0), "b", Limits(0.0, 1.0), Limits(0.0, 1.0))
 
 

@@ -75,7 +75,7 @@ def test_the_source_keeps_to_the_followers_limits(table: Path) -> None:
         ("sideways", {}, UnknownNameError, "sideways"),
         ("tilt", {}, UsageError, "follows itself"),
         ("turn", {"tilt": None}, UsageError, "is held"),
-        ("turn*1+9", {}, UsageError, "no value of 'turn'"),
+        ("turn*1+9", {}, UsageError, "no range of values of 'turn'"),
     ],
 )
 def test_what_cannot_be_is_refused(

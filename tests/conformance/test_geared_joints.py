@@ -32,10 +32,12 @@ WRIST = (
     ("bend", "revolute", "0 1 0", "0.2 0 0", (-2.0, 2.0)),
     ("spin", "revolute", "1 0 0", "0.1 0 0", (-2.8, 2.8)),
 )
+AROUND = tuple((*j[:4], (-3.3, 3.3) if j[0] == "shoulder" else j[4]) for j in WRIST)
 ARMS = {
     "finger": (FINGER, "end", "middle", "0.8"),
     "decimal finger": (FINGER, "end", "middle", "1.1393"),
     "elbow": (WRIST, "elbow", "shoulder", "2"),
+    "elbow of a shoulder that goes around": (AROUND, "elbow", "shoulder", "2"),
     "slow elbow": (WRIST, "elbow", "shoulder", "-0.7"),
     "differential": (WRIST, "bend", "roll", "0.5"),
 }

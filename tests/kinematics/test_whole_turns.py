@@ -155,12 +155,29 @@ def test_the_variable_is_the_share_of_a_turn_of_which_all_rows_turn_multiples(
             assert turns * v + shift == pytest.approx(row.scale * q + row.offset.value, abs=1e-12)
 
 
-def test_values_are_looked_for_in_a_turn_and_inside_the_limits(tmp_path: Path) -> None:
+def test_values_are_looked_for_on_the_circle_or_inside_the_limits(tmp_path: Path) -> None:
     circle = (-math.pi, math.pi)
     assert range_of(geared(tmp_path, "2"), 1) == circle
     low, high = np.array(range_of(geared(tmp_path, "0.8", 0.0, 1.0), 1)) / 0.2
-    assert (low, high) == pytest.approx((0.5 - math.pi, 0.5 + math.pi))
+    assert (low, high) == pytest.approx((-0.01, 1.01))
     low, high = np.array(range_of(geared(tmp_path, "0.8", -6.0, 6.0), 1)) / 0.2
-    assert -6.1 < low < -6.0 and 6.0 < high < 6.1
+    assert (low, high) == pytest.approx((-6.01, 6.01))
     alone = read(request(crank_robot(tmp_path, 0.5, LIMITS))).dh
     assert range_of(alone, 0) == circle
+
+
+def test_what_turns_together_is_named(tmp_path: Path) -> None:
+    """Of rows that come round together after more than the limits span, or in no ratio only together."""
+    with pytest.raises(UnsolvedChainError) as caught:
+        check_couplings(geared(tmp_path, "0.8", -20.0, 20.0))
+    assert "'shoulder' and 'elbow' come round together" in caught.value.message
+    assert "every 31.4159 of 'shoulder', and the limits span 40" in caught.value.message
+    text = (tmp_path / "elbow.urdf").read_text().replace("0.8", "0.1234567")
+    joint = '<joint name="waist" type="revolute">'
+    mimic = f'{joint}<mimic joint="shoulder" multiplier="0.7654321"/>'
+    (tmp_path / "elbow.urdf").write_text(
+        text.replace(joint, mimic).replace("-20.0", "-2").replace("20.0", "2")
+    )
+    with pytest.raises(UnsolvedChainError) as caught:
+        check_couplings(read(request(tmp_path / "elbow.urdf")).dh)
+    assert "'elbow' and 'waist' and 'shoulder' turn in the ratio" in caught.value.message

@@ -12,6 +12,7 @@ from tests.support.tables import table
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.equations.equation import Equation
 from ikgen.equations.knowledge import PolynomialEquation, Variable
+from ikgen.forms.trig_polynomial_form import CIRCLE
 from ikgen.solver.candidate import Candidate
 from ikgen.solver.leaves import (
     LEAVES,
@@ -140,12 +141,15 @@ def test_multiples_of_an_angle_are_taken_with_the_range_of_its_joint() -> None:
     (candidate,) = trig_polynomial.find([equation(both, ANGLE)], ANGLE, knowledge)
     form = candidate.form
     assert form.harmonics == (2, 5) and form.coefficients == (G.zero, B, A, D, C)
-    assert form.span == (-np.pi, np.pi) and candidate.branches == form.branches == 10
+    assert form.span == CIRCLE and candidate.branches == form.branches == 10
     one = trig_polynomial.find([equation({trig("c", 3): A}, ANGLE)], ANGLE, knowledge)
     assert [c.coefficients for c in one] == [(A, G.zero, G.zero)]
     for other in (SINGLE, DOUBLE, FULL, {**TRIPLE, **LINE}):
         assert trig_polynomial.find([equation(other, ANGLE)], ANGLE, knowledge) == []
     assert trig_polynomial.find([equation(PARABOLA, LENGTH)], LENGTH, knowledge) == []
+    assert (
+        trig_polynomial.find([equation({trig("c", 17): A, ONE: C}, ANGLE)], ANGLE, knowledge) == []
+    )
     assert trig_polynomial.find([equation(TRIPLE, OTHER, ANGLE)], ANGLE, knowledge) == []
 
 

@@ -70,10 +70,10 @@ def shared_limits(relation: Mimic, joint: str, own: Limits, of_source: Limits) -
     """The values of the source at which it and the joint are inside their limits."""
     ends = sorted((x - relation.offset) / relation.multiplier for x in (own.lower, own.upper))
     both = Limits(max(of_source.lower, ends[0]), min(of_source.upper, ends[1]))
-    if both.lower > both.upper:
+    if both.lower >= both.upper:
         raise UsageError(
-            f"--couple {joint}={relation.words}: no value of '{relation.joint}' keeps both inside "
-            "their limits",
+            f"--couple {joint}={relation.words}: no range of values of '{relation.joint}' keeps both "
+            "inside their limits",
             hint=f"'{joint}' may take {own.lower:.9g} to {own.upper:.9g}",
         )
     return both

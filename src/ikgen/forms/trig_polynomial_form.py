@@ -19,7 +19,7 @@ from ikgen.formulas.mathtext import Math
 from ikgen.formulas.notation import angle, show
 from ikgen.runtime.python.roots.trig_polynomial_roots import trig_polynomial_roots
 
-__all__ = ["TrigPolynomial", "most_roots"]
+__all__ = ["CIRCLE", "TrigPolynomial", "most_roots"]
 
 _TOUCH = 1e-3
 """By how much (rad) the imaginary part of a pair of roots that counts as one moves the fastest term."""
@@ -27,17 +27,27 @@ _TOUCH = 1e-3
 _WIDEST = 0.1
 """The same where rows are refined, at most."""
 
+CIRCLE = (-2.9, -2.9 + 2.0 * math.pi + 1e-5)
+"""The whole circle, and a little more than once, so that a root where it begins is inside; that is at no
+angle where arms often have one."""
+
+_MORE = 4
+"""By how many roots a polynomial has more in an interval than its fastest term, of arms: the exponentials
+allow twice the number of terms, which may be dozens."""
+
 
 def most_roots(harmonics: Sequence[int], span: float) -> int:
     """How many roots a trigonometric polynomial of these harmonics has at most in an interval of length
-    `span` (rad): as many as one of its degree on the circle, or what the exponentials in it allow.
+    `span` (rad): on the circle twice as many as its degree, in a part of it `_MORE` than the fastest term
+    has, or fewer where the exponentials in it allow fewer.
 
     M. Voorhoeve, Zeros of exponential polynomials, 1977: `m` exponentials whose frequencies lie `d` apart
     at most have `m - 1 + d span / (2 pi)` real zeros in an interval at most.
     """
     fastest = max(harmonics)
-    turns = math.ceil(span / (2.0 * math.pi) - 1e-9)
-    return min(2 * fastest * turns, 2 * len(harmonics) + math.floor(fastest * span / math.pi))
+    if span > 2.0 * math.pi * (1.0 - 1e-9):
+        return 2 * fastest
+    return math.floor(fastest * span / math.pi) + min(2 * len(harmonics), _MORE)
 
 
 @dataclass(frozen=True, slots=True)

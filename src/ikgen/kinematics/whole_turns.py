@@ -12,7 +12,7 @@ import math
 
 from ikgen.errors import UnsolvedChainError
 from ikgen.model.dh import DHChain, DHRow
-from ikgen.model.gear_ratio import MOST_PARTS, is_whole
+from ikgen.model.gear_ratio import MOST_PARTS, common_share, is_whole
 
 __all__ = ["check_couplings", "middle_of", "most_parts", "range_of", "turns_freely"]
 
@@ -42,14 +42,11 @@ def middle_of(dh: DHChain, joint: int) -> float:
 
 def range_of(dh: DHChain, joint: int) -> tuple[float, float]:
     """Where values of a joint's DH variable (rad) are looked for: on the whole circle, or, where several
-    turns of the joint are on it and its rows do not turn alike, one about the middle of the limits, and the
-    limits."""
+    turns of the joint are on it and its rows do not turn alike, inside the limits."""
     lead, limits = dh.lead_row(joint), dh.joints[joint].limits
-    half, span = math.pi * abs(lead.scale), limits.upper - limits.lower
-    if math.isfinite(span):
-        half = max(half, (0.5 * span + _BEYOND) * abs(lead.scale))
+    half = (0.5 * (limits.upper - limits.lower) + _BEYOND) * abs(lead.scale)
     alike = all(abs(dh.follows(row)[0]) == 1.0 for row in _rows(dh, joint))
-    if alike or half >= math.pi * (1.0 - _WHOLE):
+    if alike or abs(lead.scale) >= 1.0 - _WHOLE or half >= math.pi:
         return -math.pi, math.pi
     middle = lead.scale * middle_of(dh, joint) + lead.offset.value
     return middle - half, middle + half
@@ -84,34 +81,48 @@ def _hint(dh: DHChain, name: str, other: str) -> str:
 
 def _cause(dh: DHChain, joint: int, rows: tuple[DHRow, ...]) -> tuple[str, str] | None:
     """Why the joint has no closed form, and what else than locking it would help."""
-    ends = "--base and --tip with one of the two between them"
     lead = dh.lead_row(joint)
     for row in rows:
-        names = f"'{lead.name}' and '{row.name}'"
         if row.revolute != lead.revolute:
-            text = f"of {names} one turns and the other slides, so the equations are not algebraic"
-            return text, ends
-        ratio = row.scale / lead.scale
-        if row.revolute and not is_whole(ratio):
-            text = (
-                f"{names} turn in the ratio {abs(lead.scale):.9g} : {abs(row.scale):.9g}, and closed forms "
-                f"need a ratio of whole numbers up to {MOST_PARTS:,}"
-            )
-            own = dh.joints[joint].name
-            follower = lead.name if row.name == own else row.name
-            return text, f"--couple {follower}={own}*k with fewer digits"
+            text = f"of '{lead.name}' and '{row.name}' one turns and the other slides, so the equations are"
+            return f"{text} not algebraic", "--base and --tip with one of the two between them"
+    if lead.revolute and not all(is_whole(row.scale / lead.scale) for row in rows):
+        return _odd_ratio(dh, joint, rows)
     limits, held = dh.joints[joint].limits, dh.joints[joint].name in dh.free
     if not lead.revolute or held or turns_freely(dh, joint):
         return None
     period = 2.0 * math.pi / abs(lead.scale)
     if limits.upper - limits.lower <= period * (1.0 + _WHOLE):
         return None
+    names = " and ".join(dict.fromkeys(f"'{row.name}'" for row in rows))
+    turns = f"{names} turns {abs(lead.scale):g} times as far"
+    if len(rows) > 1:
+        turns = f"{names} come round together"
     text = (
-        f"'{lead.name}' turns {abs(lead.scale):g} times as far, so a pose has solutions every "
-        f"{period:.6g} of '{dh.joints[joint].name}', and the limits span "
-        f"{limits.upper - limits.lower:.6g}"
+        f"{turns}, so a pose has solutions every {period:.6g} of '{dh.joints[joint].name}', and the limits "
+        f"span {limits.upper - limits.lower:.6g}"
     )
     return text, f"limits that span {period:.6g} at most"
+
+
+def _odd_ratio(dh: DHChain, joint: int, rows: tuple[DHRow, ...]) -> tuple[str, str]:
+    """Of rows that turn in no ratio of whole numbers: those of which that is true by themselves, else
+    all."""
+    own = dh.joints[joint].name
+    slowest = min(rows, key=lambda row: abs(row.scale))
+    ratios = {row.name: abs(row.scale / slowest.scale) for row in rows}
+    odd = [name for name, x in ratios.items() if common_share([x]) == 1 and not is_whole(x)]
+    named = [slowest.name, *(odd[:1] or (name for name in ratios if name != slowest.name))]
+    turns = " : ".join(
+        f"{abs(row.scale):.9g}" for name in named for row in rows if row.name == name
+    )
+    names = " and ".join(f"'{name}'" for name in named)
+    followers = [name for name in named if name != own]
+    text = (
+        f"{names} turn in the ratio {turns}, and closed forms need a ratio of whole numbers up to "
+        f"{MOST_PARTS:,}"
+    )
+    return text, f"--couple {followers[-1]}={own}*k with fewer digits"
 
 
 def _rows(dh: DHChain, joint: int) -> tuple[DHRow, ...]:

@@ -6,6 +6,7 @@ say, is written as it is lowered.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
@@ -20,7 +21,7 @@ from ikgen.forms.quadratic_form import Quadratic
 from ikgen.forms.quartic_form import TrigQuartic
 from ikgen.forms.sine_cosine_form import SineCosine
 from ikgen.forms.tangent_form import Tangent
-from ikgen.forms.trig_polynomial_form import TrigPolynomial
+from ikgen.forms.trig_polynomial_form import CIRCLE, TrigPolynomial
 from ikgen.symbolic.lowered_view import LoweredView
 from ikgen.symbolic.trig_polynomial_root import MOST_DEGREE, TrigPolynomialRoot
 from ikgen.symbolic.trig_quartic_root import TrigQuarticRoot
@@ -115,7 +116,8 @@ def _trig_polynomial(form: TrigPolynomial, coefficients: Sequence[Expression]) -
     *parts, constant = coefficients
     triples = zip(form.harmonics, parts[::2], parts[1::2], strict=True)
     terms = [x for triple in triples for x in triple]
-    values = [TrigPolynomialRoot(k, *form.span, constant, *terms) for k in range(form.branches)]
+    span = (-math.pi, math.pi) if form.span == CIRCLE else form.span
+    values = [TrigPolynomialRoot(k, *span, constant, *terms) for k in range(form.branches)]
     return Alternatives(tuple(values), sum((x**2 for x in parts), sympy.S.Zero))
 
 

@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 from tests.support.routines import compiled_header, feed
 
-from ikgen.forms.trig_polynomial_form import most_roots
+from ikgen.forms.trig_polynomial_form import CIRCLE, most_roots
 from ikgen.runtime.python.roots.trig_polynomial_numbers import trig_polynomial_numbers
 from ikgen.runtime.python.roots.trig_polynomial_roots import (
     trig_polynomial_branches,
@@ -19,7 +19,6 @@ from ikgen.runtime.python.roots.trig_polynomial_roots import (
 
 Array = NDArray[np.float64]
 TOL = 1e-3
-CIRCLE = (-np.pi, np.pi)
 MAIN = r"""
 #include <cstdio>
 #include "roots/trig_polynomial.hpp"
@@ -145,7 +144,7 @@ def test_roots_that_meet(apart: float) -> None:
                 list(zip(a[0], b[0], (1.0, 2.0, 3.0), strict=True)), a0[0], CIRCLE, TOL, 6
             )
             for found in (roots[~np.isnan(roots)], np.array(numbers)):
-                gap = np.abs(found[None] - planted[:, None]).min(axis=1)
+                gap = np.abs(np.exp(1j * found) - np.exp(1j * planted)[:, None]).min(axis=1)
                 assert gap.max() < (2e-3 if apart < 1e-3 else 1e-5), (planted, found)
 
 
@@ -165,5 +164,41 @@ def test_what_is_no_polynomial_has_no_roots() -> None:
 def test_most_roots() -> None:
     assert most_roots((1, 2, 3), 2.0 * np.pi) == 6
     assert most_roots((5,), 2.0 * np.pi) == 10
-    assert most_roots((4, 5, 9), 0.5 * np.pi) == 10
-    assert most_roots((1, 3), 0.0) <= 4
+    assert most_roots((4, 5, 9), 0.5 * np.pi) == 8
+    assert most_roots((5,), 0.5 * np.pi) == 4
+    assert most_roots((1, 3), 0.0) == 4
+
+
+@pytest.mark.parametrize("off", [0.0, 1e-17, -1e-16, 3e-16, 1e-9, -1e-7, 5e-6, 1e-5, -1e-5])
+def test_roots_where_the_circle_begins_are_found_once(off: float, tmp_path: Path) -> None:
+    """Simple and double ones: round-off tells the signs there."""
+    at = CIRCLE[0] + off
+    for kind in ("simple", "double"):
+        planted = [at, at if kind == "double" else 1.0, 0.1, -0.7, 0.9, 2.0]
+        a, b, a0 = with_roots(np.array(planted))
+        n = np.arange(1.0, 4.0)
+        numbers = trig_polynomial_numbers(
+            list(zip(a[0], b[0], n, strict=True)), a0[0], CIRCLE, TOL, 6
+        )
+        arrays = trig_polynomial_roots(n, a, b, a0, CIRCLE, TOL, 6)[0]
+        for found in (np.array(numbers), arrays[~np.isnan(arrays)]):
+            z = np.exp(1j * found)
+            gap = np.abs(z[None] - np.exp(1j * np.array(planted))[:, None])
+            assert gap.min(axis=1).max() < 1e-6 and gap.min(axis=0).max() < 1e-6
+            assert len(found) == 6 if kind == "simple" else 5 <= len(found) <= 6
+    symmetric = [(0.0, 1.0, 1.0), (0.0, 0.3, 2.0), (0.0, 0.2, 3.0)]  # roots at 0 and pi
+    assert np.abs(np.sin(trig_polynomial_numbers(symmetric, 0.0, CIRCLE, TOL, 6))).max() < 1e-12
+    assert len(trig_polynomial_numbers(symmetric, 0.0, CIRCLE, TOL, 6)) == 2
+
+
+def test_cpp_finds_them_where_the_circle_begins(tmp_path: Path) -> None:
+    rest = [1.0, 2.0, 3.0, *CIRCLE, TOL, 6.0]
+    given = []
+    for off in (0.0, 1e-16, -1e-16, 1e-9, 5e-6, 1e-5):
+        a, b, a0 = with_roots(np.array([CIRCLE[0] + off, 1.0, 0.1, -0.7, 0.9, 2.0]))
+        given.append([*np.stack([a[0], b[0]], axis=1).ravel(), a0[0], *rest])
+    program = compiled_header(MAIN % {"n": len(given[0]), "most": 6}, tmp_path)
+    for row, line in zip(given, feed(program, np.array(given).ravel().tolist()), strict=True):
+        assert line[0] == 6.0 == len(trig_polynomial_branches(*row))
+        pairs = np.array(line[1:]).reshape(-1, 2)
+        np.testing.assert_allclose(pairs, trig_polynomial_branches(*row), atol=1e-9)

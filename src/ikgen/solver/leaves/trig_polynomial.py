@@ -11,11 +11,14 @@ from collections.abc import Sequence
 
 from ikgen.equations.knowledge import Knowledge, PolynomialEquation, Variable
 from ikgen.equations.matching import in_harmonics
-from ikgen.forms.trig_polynomial_form import TrigPolynomial
+from ikgen.forms.trig_polynomial_form import CIRCLE, TrigPolynomial
 from ikgen.kinematics.whole_turns import range_of
 from ikgen.solver.candidate import Candidate
 
 __all__ = ["find"]
+
+_MOST = 32
+"""Roots beyond which there is no candidate: code for all of them would take minutes to compile."""
 
 
 def find(
@@ -30,6 +33,8 @@ def find(
         found = tuple(sorted({k for k, _ in h} - {0}))
         terms = [h.get((k, kind), g.zero) for k in found for kind in "cs"]
         form = TrigPolynomial((*terms, h.get((0, "c"), g.zero)), found, _span(unknown, knowledge))
+        if form.branches > _MOST:
+            continue
         out.append(Candidate(unknown, "trigonometric polynomial", form, e.sources))
     return out
 
@@ -37,6 +42,7 @@ def find(
 def _span(unknown: Variable, knowledge: Knowledge) -> tuple[float, float]:
     """Where the unknown's values are looked for: of a joint where its own are, of other angles on the whole
     circle."""
-    if unknown.joint is None:
-        return -math.pi, math.pi
-    return range_of(knowledge.variables.dh, unknown.joint)
+    span = -math.pi, math.pi
+    if unknown.joint is not None:
+        span = range_of(knowledge.variables.dh, unknown.joint)
+    return CIRCLE if span == (-math.pi, math.pi) else span

@@ -42,12 +42,15 @@ private:
   static constexpr double kRoundOff = 1e-14;
   static constexpr double kStride = 1.5;  // of the fastest term (rad): length of the parts that are looked at first
   static constexpr double kLeast = 3e-5;  // the same: half length of parts that are not halved any more
+  static constexpr double kSame = 1e-7;   // how far a root may lie from itself a turn before (rad)
   static constexpr int kSteps = 60;
 
   struct Found {
     double* root;
     int most, count;
     void add(double t) noexcept {
+      for (int i = 0; i < count; ++i)  // of an interval that is longer than a turn
+        if (std::abs(t - kTurn - root[i]) <= kSame) return;
       if (count < most) {
         root[count++] = t;
         return;

@@ -6,7 +6,16 @@ import itertools
 import math
 from collections.abc import Sequence
 
-__all__ = ["LEAST", "ROUND_OFF", "STEPS", "STRIDE", "apart", "trig_polynomial_numbers"]
+__all__ = [
+    "LEAST",
+    "ROUND_OFF",
+    "SAME",
+    "STEPS",
+    "STRIDE",
+    "apart",
+    "once",
+    "trig_polynomial_numbers",
+]
 
 ROUND_OFF = 1e-14
 STRIDE = 1.5
@@ -15,6 +24,9 @@ STRIDE = 1.5
 LEAST = 3e-5
 """The same: half length of intervals that are not halved any more; three roots that meet are told apart
 by no less."""
+
+SAME = 1e-7
+"""How far (rad) a root may lie from itself a turn before."""
 
 STEPS = 60
 """Newton steps and halves at most; halves alone end before."""
@@ -39,7 +51,19 @@ def trig_polynomial_numbers(
     if not 0.0 < size < math.inf:
         return []
     scaled = [(a / size, b / size, n) for a, b, n in terms]
-    return apart(_Polynomial(scaled, a0 / size, tol).roots(*span), most)
+    return apart(once(_Polynomial(scaled, a0 / size, tol).roots(*span), *span), most)
+
+
+def once(roots: list[float], low: float, high: float) -> list[float]:
+    """Roots of an interval that is longer than a turn, without those that are there a turn before."""
+    if high - low <= 2.0 * math.pi:
+        return roots
+    before = [t - 2.0 * math.pi for t in roots]
+    return [
+        t
+        for t, at in zip(roots, before)
+        if at < low - SAME or all(abs(at - other) > SAME for other in roots)
+    ]
 
 
 def apart(roots: Sequence[float], most: int) -> list[float]:

@@ -16,9 +16,11 @@ from ikgen.runtime.python.arrays.array_types import Array, Flags, Index
 from ikgen.runtime.python.roots.trig_polynomial_numbers import (
     LEAST,
     ROUND_OFF,
+    SAME,
     STEPS,
     STRIDE,
     apart,
+    once,
     trig_polynomial_numbers,
 )
 
@@ -76,8 +78,12 @@ def trig_polynomial_roots(
     place = np.arange(len(rows)) - np.searchsorted(rows, rows)
     out = np.full((len(a), most), np.nan)
     out[rows[place < most], place[place < most]] = roots[place < most]
-    for row in np.unique(rows[place >= most]):
-        out[row] = apart(roots[rows == row].tolist(), most)
+    around = rows[
+        roots >= span[0] + 2.0 * math.pi - SAME
+    ]  # of an interval that is longer than a turn
+    for row in np.unique(np.concatenate([rows[place >= most], around])):
+        kept = apart(once(roots[rows == row].tolist(), *span), most)
+        out[row] = kept + [math.nan] * (most - len(kept))
     return out
 
 
