@@ -18,7 +18,7 @@ from ikgen.cli.options import (
     reading_options,
 )
 from ikgen.cli.request_options import make_request, parse_emit
-from ikgen.model.counted import counted
+from ikgen.model.counted import counted, listed
 
 __all__ = ["init"]
 
@@ -56,13 +56,20 @@ def init(
 
     With --base alone those that begin there, with --tip the one chain to that link.
     """
-    from ikgen.projects.new_config import add_to_config, config_path, robot_arms, write_config
+    from ikgen.projects.new_config import (
+        add_to_config,
+        config_path,
+        ends_left_out,
+        robot_arms,
+        write_config,
+    )
 
     request = make_request(robot, **chain)
     path, outputs = config_path(out), parse_emit(emit)
     with Console(quiet=quiet, verbose=verbose) as console:
         console("read", robot.name)
         arms = robot_arms(request)
+        others = ends_left_out(request)
     if add and path.exists():
         arms = add_to_config(path, request, arms, outputs)
     else:
@@ -72,11 +79,16 @@ def init(
     if as_json:
         rows = [{"name": a.name, "base": a.base, "tip": a.tip, "dof": a.dof} for a in arms]
         result = {"files": [str(path)], "arms": rows, "next": shlex.join(command)}
+        result["other_ends"] = list(others)
         click.echo(json.dumps(result, indent=2))
     elif not quiet:
         for arm in arms:
             ends = "" if arm.base is None else f"{arm.base} -> {arm.tip}, "
             click.echo(f"{arm.name}: {ends}{counted(arm.dof, 'joint')}{_task(arm.dof)}")
+        if others:
+            console.note(
+                f"taken for fingers or side branches: {listed(others)}; --tip LINK --add adds one"
+            )
         click.echo(f"wrote: {path}\nnext: {shlex.join(command)}")
 
 

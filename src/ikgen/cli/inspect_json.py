@@ -24,6 +24,7 @@ def as_dict(found: Inspection) -> dict[str, Any]:
     if found.tree is not None:
         record |= _tree(found.tree)
         record["candidates"] = [asdict(candidate) for candidate in found.candidates]
+        record["other_ends"] = list(found.other_ends)
     if found.dh is not None and found.geometry is not None:
         record["arm_angle"] = found.arm_angle
         record["chain"] = _chain(found.dh, found.geometry)

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from ikgen.cli.braille import skeleton_text
 from ikgen.cli.tables import table
 from ikgen.cli.tree_text import dh_table, joint_tree, transform_text
-from ikgen.model.counted import counted
+from ikgen.model.counted import counted, listed
 from ikgen.model.dh import ARM_ANGLE_OPTION
 
 if TYPE_CHECKING:
@@ -20,7 +19,6 @@ if TYPE_CHECKING:
 __all__ = ["as_text"]
 
 _PROPOSED = 4
-_MOST_TIPS = 10
 
 
 def as_text(found: Inspection) -> str:
@@ -45,18 +43,17 @@ def _chains(found: Inspection) -> str:
         lines.append(f"  --base {c.base} --tip {c.tip}   {counted(c.dof, 'joint')}; {c.why}")
         lines.append(f"      {c.words}")
         if c.other_tips:
-            lines.append(f"      other tips, fixed to it: {_listed(c.other_tips)}")
+            lines.append(f"      other tips, fixed to it: {listed(c.other_tips)}")
         if c.left_out and found.reading is None:
             lines.append(f"      {c.left_out}")
+    if found.other_ends:
+        ends = listed(found.other_ends)
+        lines.append(
+            f"  taken for fingers or side branches: {ends}; --tip LINK takes one for an arm"
+        )
     if found.reading is None:
         lines.append("several chains: choose one by --base and --tip to see more")
     return "\n".join(lines)
-
-
-def _listed(links: Sequence[str]) -> str:
-    """Names, cut where they are many: the tree has all."""
-    shown = ", ".join(links[:_MOST_TIPS])
-    return shown if len(links) <= _MOST_TIPS else f"{shown} and {len(links) - _MOST_TIPS} more"
 
 
 def _chain(dh: DHChain, geometry: GeometryClass) -> list[str]:

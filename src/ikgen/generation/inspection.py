@@ -29,7 +29,7 @@ __all__ = ["Inspection", "inspect_robot"]
 class Inspection:
     """`reading` and its `geometry` are None where it is not clear which chain is meant, `tree` for a DH
     table; `attempts` are derivations that were tried, best first, `hindrance` why none was. The geometry is
-    that of `dh`."""
+    that of `dh`. `other_ends`: the last links of branches that are taken for no arm's."""
 
     reading: Reading | None
     geometry: GeometryClass | None
@@ -37,6 +37,7 @@ class Inspection:
     candidates: tuple[ChainCandidate, ...]
     attempts: tuple[Attempt, ...]
     hindrance: IkgenError | None = None
+    other_ends: tuple[str, ...] = ()
 
     @property
     def taken(self) -> Attempt | None:
@@ -83,18 +84,21 @@ def inspect_robot(
 ) -> Inspection:
     """Read the file; the chain and what follows from it where it is clear which one."""
     from ikgen.chains.arms import candidate_chains
+    from ikgen.chains.other_ends import other_ends
     from ikgen.kinematics.classify import classify
     from ikgen.kinematics.whole_turns import check_couplings
 
     progress("read", request.robot.name)
     tree: JointTree | None = None
     candidates: tuple[ChainCandidate, ...] = ()
+    ends: tuple[str, ...] = ()
     reading: Reading | None = None
     if request.table:
         reading = read(request)
     else:
         tree = read_tree(request)
         candidates = candidate_chains(tree, request.base)
+        ends = other_ends(tree, candidates, request.base)
         if request.tip is not None or len(candidates) == 1:
             reading = read(request, tree)
     tried: list[Attempt] = []
@@ -106,5 +110,5 @@ def inspect_robot(
             tried = attempts(reading, request.named_task, progress, request.tool_axis)
         except UnsolvedChainError as error:
             hindrance = error
-    found = Inspection(reading, None, tree, candidates, tuple(tried), hindrance)
+    found = Inspection(reading, None, tree, candidates, tuple(tried), hindrance, ends)
     return replace(found, geometry=classify(found.dh) if found.dh else None)

@@ -1,8 +1,10 @@
-"""Numbers of things in words."""
+"""Numbers of things in words, and lists of names."""
 
 from __future__ import annotations
 
-__all__ = ["counted"]
+from collections.abc import Sequence
+
+__all__ = ["counted", "listed"]
 
 
 def counted(count: int, thing: str) -> str:
@@ -11,3 +13,9 @@ def counted(count: int, thing: str) -> str:
     if count == 1:
         return f"1 {noun}{space}{verb}{'s' if verb else ''}"
     return f"{count} {noun}s{space}{verb}"
+
+
+def listed(names: Sequence[str], most: int = 10) -> str:
+    """Names, cut where they are many."""
+    shown = ", ".join(names[:most])
+    return shown if len(names) <= most else f"{shown} and {len(names) - most} more"

@@ -21,7 +21,14 @@ if TYPE_CHECKING:
     from ikgen.chains.arms import ChainCandidate
     from ikgen.model.joint_tree import JointTree
 
-__all__ = ["ArmTable", "add_to_config", "config_path", "robot_arms", "write_config"]
+__all__ = [
+    "ArmTable",
+    "add_to_config",
+    "config_path",
+    "ends_left_out",
+    "robot_arms",
+    "write_config",
+]
 
 _ESCAPED = {code: f"\\u{code:04x}" for code in (0x7F, *TURNING_MARKS)}
 _FOLDER = "generated"
@@ -73,6 +80,17 @@ def robot_arms(request: Request) -> tuple[ArmTable, ...]:
     if not fit:
         _chain(tree, arms[0].base, arms[0].tip or "", several)  # says what is too many
     return tuple(_told_apart(fit))
+
+
+def ends_left_out(request: Request) -> tuple[str, ...]:
+    """The last links of branches of the request's robot that `robot_arms` takes for no arm's."""
+    if request.table or request.tip is not None:
+        return ()
+    from ikgen.chains.arms import candidate_chains
+    from ikgen.chains.other_ends import other_ends
+
+    tree = read_tree(request)
+    return other_ends(tree, candidate_chains(tree, request.base), request.base)
 
 
 def _chain(tree: JointTree, base: str | None, tip: str, several: bool) -> ArmTable:
