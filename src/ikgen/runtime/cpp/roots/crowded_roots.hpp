@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace ikgen_runtime {
 
@@ -90,7 +91,8 @@ inline int roots_around(double a2, double b2, double a1, double b1, double a0, d
     const double most = 0.25 * tol * tol * std::abs(bend) + 0.125 * tol * tol * tol * tol * std::abs(p[0]) + kValueRoundOff;
     if (y * bend >= 0.0 && 2.0 * std::abs(y) <= most) x[count++] = turns.x[i];
   }
-  std::sort(x, x + count);
+  for (int i = 1; i < count; ++i)  // few: std::sort has code for many, of which compilers warn
+    for (int k = i; k > 0 && x[k - 1] > x[k]; --k) std::swap(x[k - 1], x[k]);
   count = std::min(count, 4);
   for (int i = 0; i < count; ++i) {
     const double over = 1.0 / (1.0 + x[i] * x[i]), u = (1.0 - x[i] * x[i]) * over, v = 2.0 * x[i] * over;
