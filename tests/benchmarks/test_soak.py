@@ -50,7 +50,7 @@ def exact(tmp_path_factory: pytest.TempPathFactory) -> Emitted:
     return emit(found_source(str(EXACT), ()), tmp_path_factory.mktemp("soak"))
 
 
-OFTEN = ("spherical wrist, rounded", "elimination")
+OFTEN = ("elimination",)
 KINDS: dict[str, tuple[Path, tuple[str, ...]]] = {
     "three parallel axes": (FIXTURES / "ur5e.urdf", ()),
     "spherical wrist, rounded": (FIXTURES / "doosan_m1013.urdf", ()),

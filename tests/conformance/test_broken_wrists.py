@@ -69,6 +69,7 @@ def gaps(path: Path, configurations: Array, folder: Path) -> Array:
     return gaps_in_both(arm, header, q)
 
 
+@pytest.mark.long
 def test_solutions_between_those_of_the_closed_form_are_found(tmp_path: Path) -> None:
     path = serial_urdf(tmp_path / "wrist.urdf", ORIGINS, axes=AXES, limit=3.1)
     assert gaps(path, BETWEEN, tmp_path).max() < 1e-3

@@ -26,7 +26,7 @@ pytestmark = [
 
 Array = NDArray[np.float64]
 
-OFTEN = ("torso", "rounded_arm_angle", "ur5e")
+OFTEN = ("rounded_arm_angle", "ur5e")
 
 
 @pytest.fixture(scope="module", params=sampled(HELD, OFTEN))
@@ -57,6 +57,7 @@ def test_intervals(both: Both) -> None:
         assert np.array_equal(wide[0][:, 2], wide[1][:, 2])
 
 
+@pytest.mark.long
 def test_branches_that_come_near_each_other_end_where_each_does(tmp_path: Path) -> None:
     narrow = {"elbow": (-2.1, 0.1), "wrist_pitch": (-0.6, 0.6), "wrist_roll": (-0.4, 0.4)}
     path = tmp_path / "narrow.urdf"

@@ -35,6 +35,7 @@ STEPS = (
 )
 
 
+@pytest.mark.long
 def test_joints_stopped_first_are_let_go_where_others_have_to_stop(tmp_path: Path) -> None:
     """The shortest motion leaves the limits of several joints, by most that of one that has to move off
     its limit when another stays on its own; a row inside all limits is less than 0.01 rad away."""

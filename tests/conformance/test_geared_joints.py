@@ -58,6 +58,9 @@ def test_geared_arms_are_verified(kind: str, language: str, tmp_path: Path) -> N
     outputs = Outputs((language,), tmp_path / "out", samples=300)
     (report,) = generate(Request(geared(kind, tmp_path)), outputs).reports.values()
     assert report.passed and report.missed == 0
+    whole = ARMS[kind][3].lstrip("-").isdigit()
+    said = f"values of {ARMS[kind][2]} inside the limits"
+    assert (said in report.check("exhaustive search").detail) != whole
 
 
 @pytest.mark.parametrize("kind", ["finger", "decimal finger"])

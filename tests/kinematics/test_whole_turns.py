@@ -65,6 +65,7 @@ def test_a_crank_of_two_turns_has_every_row_once(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER)
+@pytest.mark.long
 def test_a_crank_of_two_turns_is_verified_in_both_languages(tmp_path: Path) -> None:
     outputs = Outputs(("python", "cpp"), tmp_path / "out", samples=300)
     made = generate(request(crank_robot(tmp_path, -0.5, LIMITS)), outputs)

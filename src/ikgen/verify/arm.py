@@ -68,6 +68,12 @@ class ArmUnderTest:
         return len(self.lower)
 
     @property
+    def different(self) -> NDArray[np.bool_]:
+        """Which joints (dof,) turn so that each turn is another configuration: those that drive others by a
+        gear, of 5 : 4 say. Their values count inside their limits."""
+        return np.asarray(self.revolute & ~np.isfinite(self.period))
+
+    @property
     def fastest(self) -> Array:
         """How many times as far (dof,) as a joint the fastest of what it drives moves, at least 1."""
         return np.asarray(np.max(np.abs(self.screws.A), axis=0, initial=1.0))

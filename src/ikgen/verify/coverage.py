@@ -51,6 +51,9 @@ def check_exhaustive(
         if missed.any() and not case:
             case = spell(sample.label, i, missed=solutions[missed], pose=sample.poses[i])
     detail = f"{len(found)} poses, {starts} starts each"
+    names = [name for name, x in zip(arm.oracle.joint_names, arm.different, strict=True) if x]
+    if names:
+        detail += f"; values of {', '.join(names)} inside the limits"
     return result("exhaustive search", count, failures, detail=detail, worst_case=case)
 
 

@@ -22,7 +22,7 @@ _POINT = 1e-6
 
 def _candidates(arm: ArmUnderTest, j: int) -> Array:
     """Values of joint j whose distances determine the best one, or among which it is sought."""
-    if arm.revolute[j] and not np.isfinite(arm.period[j]):
+    if arm.different[j]:
         turn = 2 * np.pi
         return np.linspace(arm.low[j] - turn, arm.high[j] + turn, 216)
     if not np.isfinite(arm.period[j]):

@@ -78,7 +78,6 @@ def find_solutions(
     free = list(arm.free)
     q[:, free] = held[owner][:, free]
     q, done = converge(arm, q, arm.aims(held, targets)[owner])
-    single = arm.revolute & ~np.isfinite(arm.period)
-    done &= np.all(~single | ((q >= arm.low) & (q <= arm.high)), axis=1)
+    done &= np.all(~arm.different | ((q >= arm.low) & (q <= arm.high)), axis=1)
     done &= arm.held_off(q, held[owner], targets[owner]) < _HELD
     return [q[done & (owner == i)] for i in range(len(targets))]

@@ -223,6 +223,7 @@ def test_lanes_find_the_rows_at_an_arm_angle(tmp_path: Path) -> None:
     assert sum(rough > 0 for _, rough in found) < 40
 
 
+@pytest.mark.long
 def test_a_continuum_that_rounding_breaks_is_searched_all_around(tmp_path: Path) -> None:
     q = np.array(FOLDED)
     found = answers(rounded(meeting_shoulder()), q, tmp_path)
@@ -231,6 +232,7 @@ def test_a_continuum_that_rounding_breaks_is_searched_all_around(tmp_path: Path)
             assert len(rows) and apart(rows, at).min() < 1e-4
 
 
+@pytest.mark.long
 def test_behind_a_direction_that_rounding_turns_rows_are_found(tmp_path: Path) -> None:
     q = beside_the_wrist(300)
     for at, (answered, _) in zip(q, answers(rounded(three_parallel()), q, tmp_path), strict=True):

@@ -85,7 +85,7 @@ def nearest(roots: Array, c: Array, s: Array) -> Array:
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_complete(kind: str) -> None:
-    k, roots = planted(kind, 25_000)
+    k, roots = planted(kind, 10_000)
     count, c, s = trig_quartic_batch(*k.T)
     near = nearest(roots, c, s)
     clustered = spread(roots) < 0.05  # three roots in one place: ill-conditioned as such
