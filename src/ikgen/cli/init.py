@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import shlex
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -19,6 +19,9 @@ from ikgen.cli.options import (
 )
 from ikgen.cli.request_options import make_request, parse_emit
 from ikgen.model.counted import counted, listed
+
+if TYPE_CHECKING:
+    from ikgen.projects.new_config import ArmTable
 
 __all__ = ["init"]
 
@@ -56,6 +59,7 @@ def init(
 
     With --base alone those that begin there, with --tip the one chain to that link.
     """
+    from ikgen.generation.read import read_tree
     from ikgen.projects.new_config import (
         add_to_config,
         config_path,
@@ -68,8 +72,9 @@ def init(
     path, outputs = config_path(out), parse_emit(emit)
     with Console(quiet=quiet, verbose=verbose) as console:
         console("read", robot.name)
-        arms = robot_arms(request)
-        others = ends_left_out(request)
+        tree = None if request.table else read_tree(request)
+        arms = robot_arms(request, tree)
+        others = ends_left_out(request, tree) if tree is not None else ()
     if add and path.exists():
         arms = add_to_config(path, request, arms, outputs)
     else:
@@ -83,13 +88,17 @@ def init(
         click.echo(json.dumps(result, indent=2))
     elif not quiet:
         for arm in arms:
-            ends = "" if arm.base is None else f"{arm.base} -> {arm.tip}, "
-            click.echo(f"{arm.name}: {ends}{counted(arm.dof, 'joint')}{_task(arm.dof)}")
+            click.echo(_line(arm))
         if others:
-            console.note(
-                f"taken for fingers or side branches: {listed(others)}; --tip LINK --add adds one"
-            )
+            taken = f"taken for fingers or side branches: {listed(others)}"
+            console.note(f"{taken}; --tip LINK --add adds one")
         click.echo(f"wrote: {path}\nnext: {shlex.join(command)}")
+
+
+def _line(arm: ArmTable) -> str:
+    """What is told of an arm."""
+    ends = "" if arm.base is None else f"{arm.base} -> {arm.tip}, "
+    return f"{arm.name}: {ends}{counted(arm.dof, 'joint')}{_task(arm.dof)}"
 
 
 def _task(dof: int) -> str:

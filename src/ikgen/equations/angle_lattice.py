@@ -7,6 +7,7 @@ from copy import copy
 
 import numpy as np
 
+from ikgen.algebra.angle_sums import angle_sum
 from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.algebra.polynomial import AngleCombination
@@ -84,10 +85,10 @@ class AngleLattice:
             left = abs(factor)
             while left:
                 if left % 2 or left == 2:
-                    found = _sum(g, found, turn)
+                    found = angle_sum(g, found, turn)
                     left -= 1
                 else:
-                    turn, left = _sum(g, turn, turn), left // 2
+                    turn, left = angle_sum(g, turn, turn), left // 2
         return found
 
     def represent(
@@ -142,9 +143,3 @@ class AngleLattice:
             both = np.linalg.matrix_rank(np.array(known + [list(k) for k in combinations]))
             self._ranks[key] = int(both) - self._solved_rank
         return self._ranks[key]
-
-
-def _sum(g: ExpressionGraph, a: tuple[Expr, Expr], b: tuple[Expr, Expr]) -> tuple[Expr, Expr]:
-    """Cosine and sine of the sum of two angles."""
-    (ac, as_), (bc, bs) = a, b
-    return g.sub(g.mul(ac, bc), g.mul(as_, bs)), g.add(g.mul(as_, bc), g.mul(ac, bs))

@@ -9,6 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from ikgen.algebra.angle_sums import angle_sum
 from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.forms.form import Array, Form
@@ -158,15 +159,9 @@ def _multiple(g: ExpressionGraph, n: int, unknown: tuple[Expr, ...]) -> tuple[Ex
     turn = c, s
     while n:
         if n % 2:
-            found = turn if found is None else _sum(g, found, turn)
+            found = turn if found is None else angle_sum(g, found, turn)
         n //= 2
         if n:
-            turn = _sum(g, turn, turn)
+            turn = angle_sum(g, turn, turn)
     assert found is not None
     return found
-
-
-def _sum(g: ExpressionGraph, a: tuple[Expr, Expr], b: tuple[Expr, Expr]) -> tuple[Expr, Expr]:
-    """Cosine and sine of the sum of two angles."""
-    (ac, as_), (bc, bs) = a, b
-    return g.sub(g.mul(ac, bc), g.mul(as_, bs)), g.add(g.mul(as_, bc), g.mul(ac, bs))

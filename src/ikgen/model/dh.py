@@ -217,7 +217,9 @@ class DHChain:
         of which all turn whole multiples."""
         rows = [row for row in self.rows if row.driver == joint]
         least = min(rows, key=lambda row: abs(row.scale))
-        share = common_share([row.scale / least.scale for row in rows]) if least.revolute else 1
+        if len(rows) == 1 or not least.revolute:
+            return least
+        share = common_share([row.scale / least.scale for row in rows])
         if share == 1:
             return least
         return replace(least, scale=least.scale / share, offset=Angle(0.0, Fraction(0)))

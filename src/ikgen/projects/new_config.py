@@ -52,16 +52,16 @@ def config_path(out: Path) -> Path:
     return out / CONFIG if out.is_dir() else out
 
 
-def robot_arms(request: Request) -> tuple[ArmTable, ...]:
+def robot_arms(request: Request, tree: JointTree | None = None) -> tuple[ArmTable, ...]:
     """Every arm of the request's robot, of those from its base if it names one, or the chain to its tip;
-    raises `UsageError` where none is found."""
+    raises `UsageError` where none is found. `tree`: the robot's, where it is read already."""
     if request.table:
         dh = read(request).dh
         return (ArmTable(arm_name(dh.robot), None, None, dh.dof),)
     from ikgen.chains.arms import candidate_chains
     from ikgen.model.chain import MOST_AXES
 
-    tree = read_tree(request)
+    tree = tree or read_tree(request)
     chains: dict[str, list[ChainCandidate]] = {}
     every = candidate_chains(tree)
     several = len({chain.tip for chain in every}) > 1
@@ -82,14 +82,13 @@ def robot_arms(request: Request) -> tuple[ArmTable, ...]:
     return tuple(_told_apart(fit))
 
 
-def ends_left_out(request: Request) -> tuple[str, ...]:
-    """The last links of branches of the request's robot that `robot_arms` takes for no arm's."""
-    if request.table or request.tip is not None:
+def ends_left_out(request: Request, tree: JointTree) -> tuple[str, ...]:
+    """The last links of branches of the request's tree that `robot_arms` takes for no arm's."""
+    if request.tip is not None:
         return ()
     from ikgen.chains.arms import candidate_chains
     from ikgen.chains.other_ends import other_ends
 
-    tree = read_tree(request)
     return other_ends(tree, candidate_chains(tree, request.base), request.base)
 
 
