@@ -536,6 +536,21 @@ template <class Arm, bool kAngle = Arm::kArmAngle> struct HeldAim {
   }
 };
 
+// --- rigid frame ---------------------------------------------------------------------------------
+template <class X> struct FrameOf {
+  X R[3][3], p[3];
+};
+using Frame = FrameOf<double>;
+
+template <class X> constexpr FrameOf<X> inverse(const FrameOf<X>& a) noexcept {
+  FrameOf<X> out{};
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) out.R[i][j] = a.R[j][i];
+    out.p[i] = -(a.R[0][i] * a.p[0] + a.R[1][i] * a.p[1] + a.R[2][i] * a.p[2]);
+  }
+  return out;
+}
+
 // --- lane sines ----------------------------------------------------------------------------------
 template <int N> struct Sines {
   Lanes<N> cosine, sine;
@@ -580,11 +595,6 @@ struct Motion {
   bool revolute;
   double scale, offset;
 };
-
-template <class X> struct FrameOf {
-  X R[3][3], p[3];
-};
-using Frame = FrameOf<double>;
 
 inline void by_columns(const Frame& T, double* t) noexcept {
   for (int r = 0; r < 3; ++r) {

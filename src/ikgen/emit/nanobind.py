@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ikgen.emit.blanks import blanks
@@ -19,6 +20,7 @@ __all__ = ["emit", "emit_derivation"]
 
 _FILES = ("pyproject.toml", "CMakeLists.txt", "README.md", "native.cpp")
 _PACKAGE = ("_native.pyi", "py.typed")
+_ARGUMENTS = Path(__file__).resolve().parents[1] / "runtime" / "nanobind" / "array_arguments.hpp"
 
 
 def emit_derivation(derivation: Derivation) -> dict[str, str]:
@@ -43,6 +45,7 @@ def emit(module: SolverModule) -> dict[str, str]:
     }
     out = {path: render("nanobind", f"{file}.jinja", **values) for path, file in paths.items()}
     out[f"{package}/{package}/__init__.py"] = emit_interface(module)
+    out[f"{package}/{_ARGUMENTS.name}"] = _ARGUMENTS.read_text(encoding="utf-8")
     return out | {f"{package}/{module.name}_ik.hpp": emit_header(module)}
 
 

@@ -53,7 +53,7 @@ template <class Plan> int run() {
   const elimination::Chain chain = elimination::chain_of<Plan>(F);
   for (read(&n, 1, "%d"); n > 0; --n) {
     read(T, 12, "%lf");
-    const elimination::Frame pose = elimination::scaled_frame<Plan>(T);
+    const Frame pose = elimination::scaled_frame<Plan>(T);
     all.count = blurred.count = 0;
     const bool alone = elimination::run_parallel<Plan::kKind>(chain, pose, Plan::kParallel, blurred, all);
     all.count = 0;

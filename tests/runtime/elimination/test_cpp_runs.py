@@ -13,9 +13,9 @@ RUNS = r"""
 #include "numbers.hpp"
 using namespace ikgen_runtime;
 static int calls, rows;
-static elimination::Spectrum found(const elimination::Chain&, const elimination::Frame&,
-                          const elimination::Frame&, const elimination::Turning& turning,
-                          const std::array<int, 3>&, elimination::Solutions& out) {
+static elimination::Spectrum found(const elimination::Chain&, const Frame&, const Frame&,
+                                   const elimination::Turning& turning, const std::array<int, 3>&,
+                                   elimination::Solutions& out) {
   ++calls;
   for (int k = 0; k < rows; ++k)
     elimination::keep(elimination::solution_of(turning, {0.02 * k, 0.1, 0.2, 0.3, 0.4, 0.5}), out);
@@ -25,8 +25,8 @@ static elimination::Spectrum found(const elimination::Chain&, const elimination:
   return roots;
 }
 int main() {
-  elimination::Chain F{};  // all axes on one line
-  for (auto& frame : F) frame.R.v = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
+  elimination::Chain F;
+  F.fill(kIdentity);  // all axes on one line
   const elimination::Turning turning = {true, true, true, true, true, true};
   const std::array<std::array<int, 3>, 2> plans = {};
   while (std::scanf("%d", &rows) == 1) {

@@ -52,7 +52,7 @@ int main() {
   const elimination::Chain chain = elimination::chain_of<Plan>(F);
   for (; n > 0 && read(T, 12, "%lf"); --n) {
     elimination::Solutions all;
-    const elimination::Frame target = elimination::scaled_frame<Plan>(T);
+    const Frame target = elimination::scaled_frame<Plan>(T);
     if (slides == 1 && both) OneSlideBothMethod::solve<Plan>(chain, target, turning, all);
     if (slides == 1 && !both) OneSlideMethod::solve<Plan>(chain, target, turning, all);
     if (slides == 2) TwoSlidesMethod::solve<Plan>(chain, target, turning, all);

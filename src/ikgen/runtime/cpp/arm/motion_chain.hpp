@@ -7,6 +7,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "arm/rigid_frame.hpp"
 #include "arrays/lane_sines.hpp"
 #include "arrays/small_matrix.hpp"
 
@@ -17,12 +18,6 @@ struct Motion {
   bool revolute;
   double scale, offset;
 };
-
-// Of numbers, or of packs.
-template <class X> struct FrameOf {
-  X R[3][3], p[3];
-};
-using Frame = FrameOf<double>;
 
 // A frame's matrix, columns first.
 inline void by_columns(const Frame& T, double* t) noexcept {

@@ -11,24 +11,6 @@ namespace ikgen_runtime {
 
 namespace elimination {
 
-inline WideFrame compose(const WideFrame& a, const WideFrame& b) noexcept {
-  WideFrame out;
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) out.R[i][j] = a.R[i][0] * b.R[0][j] + a.R[i][1] * b.R[1][j] + a.R[i][2] * b.R[2][j];
-    out.p[i] = a.R[i][0] * b.p[0] + a.R[i][1] * b.p[1] + a.R[i][2] * b.p[2] + a.p[i];
-  }
-  return out;
-}
-
-inline WideFrame inverse(const WideFrame& a) noexcept {
-  WideFrame out;
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) out.R[i][j] = a.R[j][i];
-    out.p[i] = -(a.R[0][i] * a.p[0] + a.R[1][i] * a.p[1] + a.R[2][i] * a.p[2]);
-  }
-  return out;
-}
-
 // The pair of n times an angle.
 inline Pair multiple(const Pair& z, int n) noexcept {
   if (n < 0) return multiple({z.c, -z.s}, -n);
@@ -224,7 +206,7 @@ inline void fill(const CoupledEquations<Plan>& of, const Wide& c, const Wide& s,
   WideInvariants at[3], five[3], four[3];
   for (int j = 0; j < 3; ++j) {
     WideFrame X = C[1];
-    turn(X, spread<kWide>(kC3[j]), spread<kWide>(kS3[j]));
+    rotate(X, spread<kWide>(kC3[j]), spread<kWide>(kS3[j]));
     at[j] = invariants(compose(X, C[2]));
   }
   to_trig(at, five);

@@ -134,9 +134,9 @@ inline bool run_coupled_resultant(const CoupledChain<Plan>& F, const Frame& T, c
     WideFrame C[3];
     inner_links(of, angle, C);
     WideFrame U = C[0];
-    turn(U, z[3].c, z[3].s);
+    rotate(U, z[3].c, z[3].s);
     U = compose(U, C[1]);
-    turn(U, z[4].c, z[4].s);
+    rotate(U, z[4].c, z[4].s);
     Six q = close_loop(of.loop, of.eq, compose(U, C[2]), z);
     q.c[Plan::kCoupled] = angle.c;
     q.s[Plan::kCoupled] = angle.s;

@@ -9,7 +9,7 @@ namespace ikgen_runtime {
 
 struct General6rMethod {
   template <class Plan>
-  static bool solve(const elimination::Chain& F, const elimination::Frame& T, const elimination::Turning&, elimination::Solutions& out) noexcept {
+  static bool solve(const elimination::Chain& F, const Frame& T, const elimination::Turning&, elimination::Solutions& out) noexcept {
     return elimination::solve_6r<Plan>(F, T, out);
   }
 };

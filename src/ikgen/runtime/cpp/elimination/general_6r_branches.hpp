@@ -12,33 +12,13 @@ struct Six {  // cosines and sines of the six joints, base to tip
   Wide c[6], s[6];
 };
 
-struct WideFrame {
-  Wide R[3][3], p[3];
-};
+using WideFrame = FrameOf<Wide>;
 
 inline WideFrame widen(const Frame& a) noexcept {
   WideFrame out;
   for (Index i = 0; i < 3; ++i) {
-    for (Index j = 0; j < 3; ++j) out.R[i][j] = spread<kWide>(a.R(i, j));
+    for (Index j = 0; j < 3; ++j) out.R[i][j] = spread<kWide>(a.R[i][j]);
     out.p[i] = spread<kWide>(a.p[i]);
-  }
-  return out;
-}
-
-// a * Rz
-inline void turn(WideFrame& a, const Wide& c, const Wide& s) noexcept {
-  for (auto& row : a.R) {
-    const Wide x = row[0], y = row[1];
-    row[0] = c * x + s * y;
-    row[1] = c * y - s * x;
-  }
-}
-
-inline WideFrame compose(const WideFrame& a, const Frame& b) noexcept {
-  WideFrame out;
-  for (Index i = 0; i < 3; ++i) {
-    for (Index j = 0; j < 3; ++j) out.R[i][j] = a.R[i][0] * b.R(0, j) + a.R[i][1] * b.R(1, j) + a.R[i][2] * b.R(2, j);
-    out.p[i] = a.R[i][0] * b.p[0] + a.R[i][1] * b.p[1] + a.R[i][2] * b.p[2] + a.p[i];
   }
   return out;
 }
@@ -129,7 +109,7 @@ inline void outer_angles(const Equations& eq, const WideFrame& U, Pair& one, Pai
 
 // R_4 C_4 ... and the like: the frame before it, turned, then the constant.
 inline WideFrame pass(WideFrame a, const Pair& angle, const Frame& constant) noexcept {
-  turn(a, angle.c, angle.s);
+  rotate(a, angle.c, angle.s);
   return compose(a, constant);
 }
 
@@ -137,7 +117,7 @@ inline WideFrame pass(WideFrame a, const Pair& angle, const Frame& constant) noe
 inline Six close_loop(const Loop& loop, const Equations& eq, const WideFrame& U, Pair (&z)[6]) noexcept {
   outer_angles(eq, U, z[0], z[1]);
   WideFrame Y = pass(widen(loop.C[5]), z[0], loop.C[0]);
-  turn(Y, z[1].c, z[1].s);
+  rotate(Y, z[1].c, z[1].s);
   Wide x[2][2];  // of Y U, whose inverse is R6
   for (int i = 0; i < 2; ++i)
     for (int j = 0; j < 2; ++j) x[i][j] = Y.R[i][0] * U.R[0][j] + Y.R[i][1] * U.R[1][j] + Y.R[i][2] * U.R[2][j];

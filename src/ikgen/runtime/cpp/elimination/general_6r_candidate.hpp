@@ -51,7 +51,7 @@ inline std::array<double, 14> inner_invariants(const Mat<14, 12>& left, const Ma
 
 // The angle about z that takes a rotation about z back.
 inline double angle_back(const Frame& X) noexcept {
-  return std::atan2(X.R(0, 1) - X.R(1, 0), X.R(0, 0) + X.R(1, 1));
+  return std::atan2(X.R[0][1] - X.R[1][0], X.R[0][0] + X.R[1][1]);
 }
 
 // All loop angles from three: theta_1 and theta_2 linearly, theta_6 from the rotation left over.
@@ -62,7 +62,7 @@ inline std::array<double, 6> complete(const Loop& loop, const Equations& eq, dou
   const std::array<Complex, 2> outer = outer_pair(eq, u);
   const Complex z[5] = {outer[0], outer[1], z3, z4, z5};
   Frame X = loop.C[5];
-  for (Index i = 0; i < 5; ++i) X = compose(turn(X, z[i].real(), z[i].imag()), loop.C[i]);
+  for (Index i = 0; i < 5; ++i) X = compose(rotated(X, z[i].real(), z[i].imag()), loop.C[i]);
   return {std::arg(z[0]), std::arg(z[1]), t3, std::arg(z4), std::arg(z5), angle_back(X)};
 }
 
@@ -91,7 +91,7 @@ inline State residual(const Frames& F, const Frame& T, const Vector& q, const Tu
   Mat<axes, 3> p, z;
   for (Index i = 0; i < axes; ++i) {
     for (Index k = 0; k < 3; ++k) {
-      z(i, k) = X.R(k, 2);
+      z(i, k) = X.R[k][2];
       p(i, k) = X.p[k];
     }
     const Axis axis = axis_of(F, i);
@@ -101,8 +101,8 @@ inline State residual(const Frames& F, const Frame& T, const Vector& q, const Tu
   out.r = out.square = 0.0;
   for (Index i = 0; i < 3; ++i) {
     for (Index j = 0; j < 3; ++j) {
-      for (Index k = 0; k < 3; ++k) S(i, j) += T.R(i, k) * X.R(j, k);
-      out.r = std::max(out.r, std::abs(T.R(i, j) - X.R(i, j)));
+      for (Index k = 0; k < 3; ++k) S(i, j) += T.R[i][k] * X.R[j][k];
+      out.r = std::max(out.r, std::abs(T.R[i][j] - X.R[i][j]));
     }
     out.e[i] = T.p[i] - X.p[i];
     out.r = std::max(out.r, std::abs(out.e[i]));

@@ -20,7 +20,7 @@ using Complex = std::complex<double>;
 
 // Invariants l = z, p, m = p x l, q = (p.p) l - 2 (p.l) p: x of the four (0-3), y (4-7), z (8-11), p.p, p.l.
 inline std::array<double, 14> invariants(const Frame& X) noexcept {
-  const double l[3] = {X.R(0, 2), X.R(1, 2), X.R(2, 2)};
+  const double l[3] = {X.R[0][2], X.R[1][2], X.R[2][2]};
   const auto& p = X.p;
   const double pp = p[0] * p[0] + p[1] * p[1] + p[2] * p[2], pl = p[0] * l[0] + p[1] * l[1] + p[2] * l[2];
   std::array<double, 14> v;
@@ -42,16 +42,16 @@ inline Mat<14, 16> action(const Frame& C) noexcept {
   const double tt = t[0] * t[0] + t[1] * t[1] + t[2] * t[2];
   Mat<14, 16> G{};
   for (Index j = 0; j < 3; ++j) {
-    const double tR = t[0] * C.R(0, j) + t[1] * C.R(1, j) + t[2] * C.R(2, j);
+    const double tR = t[0] * C.R[0][j] + t[1] * C.R[1][j] + t[2] * C.R[2][j];
     G(12, 4 * j + 1) = 2.0 * tR;
     G(13, 4 * j) = tR;
     for (Index i = 0; i < 3; ++i) {
       const Index n = (i + 1) % 3, m = (i + 2) % 3;
-      const double cross = t[n] * C.R(m, j) - t[m] * C.R(n, j);
-      for (Index k = 0; k < 4; ++k) G(4 * i + k, 4 * j + k) = C.R(i, j);
+      const double cross = t[n] * C.R[m][j] - t[m] * C.R[n][j];
+      for (Index k = 0; k < 4; ++k) G(4 * i + k, 4 * j + k) = C.R[i][j];
       G(4 * i + 2, 4 * j) = cross;
       G(4 * i + 3, 4 * j + 2) = -2.0 * cross;
-      G(4 * i + 3, 4 * j) = tt * C.R(i, j) - 2.0 * t[i] * tR;
+      G(4 * i + 3, 4 * j) = tt * C.R[i][j] - 2.0 * t[i] * tR;
     }
   }
   for (Index i = 0; i < 3; ++i) {
@@ -138,7 +138,7 @@ inline std::array<double, 6> householder(const double* x, Index from) noexcept {
 
 inline void sample_left(const Loop& loop, Mat<14, 12>& left) noexcept {
   std::array<std::array<double, 14>, 3> v;
-  for (Index j = 0; j < 3; ++j) v[j] = invariants(compose(turn(loop.C[3], kC3[j], kS3[j]), loop.C[4]));
+  for (Index j = 0; j < 3; ++j) v[j] = invariants(compose(rotated(loop.C[3], kC3[j], kS3[j]), loop.C[4]));
   const Turned<14, 4> four = turn_through(action(loop.C[2]), to_trig(v[0], v[1], v[2]));
   const Lanes<4> none = spread<4>(0.0);
   for (Index r = 0; r < 14; ++r) {  // three of each four
@@ -153,7 +153,7 @@ inline void sample_left(const Loop& loop, Mat<14, 12>& left) noexcept {
 inline void sample_right(const Loop& loop, Mat<14, 3>& right) noexcept {
   const Frame a = inverse(loop.C[0]), b = inverse(loop.C[5]);
   std::array<std::array<double, 14>, 3> v;
-  for (Index i = 0; i < 3; ++i) v[i] = invariants(compose(turn(a, kC3[i], -kS3[i]), b));
+  for (Index i = 0; i < 3; ++i) v[i] = invariants(compose(rotated(a, kC3[i], -kS3[i]), b));
   const Mat<14, 4> u = to_trig(v[0], v[1], v[2]);
   for (Index r = 0; r < 14; ++r)
     for (Index k = 0; k < 3; ++k) right(r, k) = u(r, k);

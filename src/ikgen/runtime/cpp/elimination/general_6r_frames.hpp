@@ -4,11 +4,12 @@
 #include <cmath>
 #include <cstddef>
 
+#include "arm/rigid_frame.hpp"
 #include "arrays/constants.hpp"
 
 namespace ikgen_runtime {
 
-// --- general_6r: rigid transforms and the closed loop of six joints --------------------------------
+// --- general_6r: the closed loop of six joints -----------------------------------------------------
 // Plain loops over fixed arrays: Eigen's expressions would cost the including file minutes of compilation.
 
 namespace elimination {
@@ -22,52 +23,11 @@ struct Mat {  // row-major
   constexpr const double& operator()(Index i, Index j) const noexcept { return v[i * C + j]; }
 };
 
-struct Frame {
-  Mat<3, 3> R;
-  std::array<double, 3> p;
-};
-
-constexpr Frame compose(const Frame& a, const Frame& b) noexcept {
-  Frame out{};
-  for (Index i = 0; i < 3; ++i) {
-    for (Index j = 0; j < 3; ++j)
-      out.R(i, j) = a.R(i, 0) * b.R(0, j) + a.R(i, 1) * b.R(1, j) + a.R(i, 2) * b.R(2, j);
-    out.p[i] = a.R(i, 0) * b.p[0] + a.R(i, 1) * b.p[1] + a.R(i, 2) * b.p[2] + a.p[i];
-  }
-  return out;
-}
-
-constexpr Frame inverse(const Frame& a) noexcept {
-  Frame out{};
-  for (Index i = 0; i < 3; ++i) {
-    for (Index j = 0; j < 3; ++j) out.R(i, j) = a.R(j, i);
-    out.p[i] = -(a.R(0, i) * a.p[0] + a.R(1, i) * a.p[1] + a.R(2, i) * a.p[2]);
-  }
-  return out;
-}
-
-// a * Rz with the angle's cosine c and sine s
-constexpr Frame turn(const Frame& a, double c, double s) noexcept {
-  Frame out = a;
-  for (Index i = 0; i < 3; ++i) {
-    out.R(i, 0) = c * a.R(i, 0) + s * a.R(i, 1);
-    out.R(i, 1) = c * a.R(i, 1) - s * a.R(i, 0);
-  }
-  return out;
-}
-
-// a * Tz
-constexpr Frame slide(const Frame& a, double d) noexcept {
-  Frame out = a;
-  for (Index i = 0; i < 3; ++i) out.p[i] += d * a.R(i, 2);
-  return out;
-}
-
 using Turning = std::array<bool, 6>;  // which of the six joints turn; the others slide
 inline constexpr Turning kAllTurn = {true, true, true, true, true, true};
 
 inline Frame moved(const Frame& a, bool turns, double value) noexcept {
-  return turns ? turn(a, std::cos(value), std::sin(value)) : slide(a, value);
+  return turns ? rotated(a, std::cos(value), std::sin(value)) : slid(a, value);
 }
 
 inline double wrap(double x) noexcept {  // to (-pi, pi]

@@ -13,8 +13,8 @@ inline Wide set_errors(const Frame& T, const WideFrame& X, Wide (&rows)[6][7]) n
   Wide S[3][3], worst = spread<kWide>(0.0);
   for (Index i = 0; i < 3; ++i) {
     for (Index j = 0; j < 3; ++j) {
-      S[i][j] = T.R(i, 0) * X.R[j][0] + T.R(i, 1) * X.R[j][1] + T.R(i, 2) * X.R[j][2];
-      worst = max(worst, abs(T.R(i, j) - X.R[i][j]));
+      S[i][j] = T.R[i][0] * X.R[j][0] + T.R[i][1] * X.R[j][1] + T.R[i][2] * X.R[j][2];
+      worst = max(worst, abs(T.R[i][j] - X.R[i][j]));
     }
     rows[i][6] = T.p[i] - X.p[i];
     worst = max(worst, abs(rows[i][6]));

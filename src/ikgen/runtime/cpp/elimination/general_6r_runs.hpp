@@ -37,10 +37,7 @@ inline void add_refined(const Frames& F, const Frame& T, const Turning& turning,
 inline Frame displacement(double by) noexcept {
   const double c = std::cos(0.9 * by), s = std::sin(0.9 * by);  // about z
   const double d = std::cos(1.1 * by), e = std::sin(1.1 * by);  // about x
-  Frame out{};
-  const double R[9] = {c, -s * d, s * e, s, c * d, -c * e, 0.0, e, d};
-  for (Index i = 0; i < 9; ++i) out.R.v[i] = R[i];
-  out.p = {0.8 * by, -1.1 * by, 0.6 * by};
+  const Frame out = {{{c, -s * d, s * e}, {s, c * d, -c * e}, {0.0, e, d}}, {0.8 * by, -1.1 * by, 0.6 * by}};
   return out;
 }
 

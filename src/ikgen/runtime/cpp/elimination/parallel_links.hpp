@@ -23,12 +23,12 @@ struct ParallelLinks {
 
 inline ParallelLinks parallel_links(const Loop& loop) noexcept {
   const Frame &first = loop.C[0], &second = loop.C[1], &third = loop.C[2];
-  const double nx = first.R(0, 2), ny = first.R(1, 2), nz = first.R(2, 2), s1 = std::sqrt(nx * nx + ny * ny) + 1e-150;
-  const double zx = third.R(0, 2), zy = third.R(1, 2), zz = third.R(2, 2), s3 = std::sqrt(zx * zx + zy * zy) + 1e-150;
+  const double nx = first.R[0][2], ny = first.R[1][2], nz = first.R[2][2], s1 = std::sqrt(nx * nx + ny * ny) + 1e-150;
+  const double zx = third.R[0][2], zy = third.R[1][2], zz = third.R[2][2], s3 = std::sqrt(zx * zx + zy * zy) + 1e-150;
   const double foot = -(first.p[0] * nx + first.p[1] * ny) / (s1 * s1);  // of the first normal, on axis 2
   ParallelLinks out;
-  out.side = second.R(2, 2) > 0.0 ? 1.0 : -1.0;
-  out.tilt = std::sqrt(second.R(0, 2) * second.R(0, 2) + second.R(1, 2) * second.R(1, 2));
+  out.side = second.R[2][2] > 0.0 ? 1.0 : -1.0;
+  out.tilt = std::sqrt(second.R[0][2] * second.R[0][2] + second.R[1][2] * second.R[1][2]);
   out.h4 = -(third.p[0] * zx + third.p[1] * zy) / (s3 * s3);
   out.h1 = first.p[2] + foot * nz;
   out.c1 = nz;
@@ -52,11 +52,11 @@ struct ParallelLoop {
   bool rounded;
 };
 
-inline void set_turning(const Mat<3, 3>& R, const double (&v)[3], double (&out)[3][3]) noexcept {
+inline void set_turning(const double (&R)[3][3], const double (&v)[3], double (&out)[3][3]) noexcept {
   for (Index i = 0; i < 3; ++i) {
-    out[i][0] = R(i, 2) * v[2];
-    out[i][1] = R(i, 0) * v[0] + R(i, 1) * v[1];
-    out[i][2] = R(i, 1) * v[0] - R(i, 0) * v[1];
+    out[i][0] = R[i][2] * v[2];
+    out[i][1] = R[i][0] * v[0] + R[i][1] * v[1];
+    out[i][2] = R[i][1] * v[0] - R[i][0] * v[1];
   }
 }
 
@@ -82,9 +82,9 @@ template <Parallel Kind> inline ParallelLoop parallel_loop(const Loop& loop) noe
   const Frame four = inverse(loop.C[3]), &one = loop.C[5], &middle = loop.C[4];
   double z1[3], o1[3];
   for (Index i = 0; i < 3; ++i) {
-    z1[i] = one.R(i, 2);
+    z1[i] = one.R[i][2];
     o1[i] = one.p[i] + out.of.h1 * z1[i];
-    out.z4[i] = four.R(i, 2);
+    out.z4[i] = four.R[i][2];
     out.o4[i] = four.p[i] + out.of.h4 * out.z4[i];
   }
   set_turning(middle.R, z1, out.z1);
@@ -97,8 +97,7 @@ template <Parallel Kind> inline ParallelLoop parallel_loop(const Loop& loop) noe
     out.z4o4 += out.z4[i] * out.o4[i];
     out.o4o4 += out.o4[i] * out.o4[i];
   }
-  const double t[3] = {middle.p[0], middle.p[1], middle.p[2]};
-  const double reach = length_of(t) + length_of(o1) + length_of(out.o4);
+  const double reach = length_of(middle.p) + length_of(o1) + length_of(out.o4);
   out.square = (1.0 + reach) * (1.0 + reach);
   out.volume = 1.0 + 2.0 * reach;
   set_off<Kind>(out);

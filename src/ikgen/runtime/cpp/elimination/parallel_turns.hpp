@@ -65,10 +65,9 @@ inline Six complete(const Loop& loop, double side, const Wide (&n)[3], const Pai
   Pair t[6];
   t[4] = five;
   t[5] = six;
-  const Frame still = {{{1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}}, {0.0, 0.0, 0.0}};
-  const WideFrame first = pass(widen(C[4]), six, C[5]), fourth = pass(widen(still), {five.c, -five.s}, inverse(C[3]));
-  t[0] = between(seen(first, 0, n), seen(first, 1, n), one(C[0].R(0, 2)), one(C[0].R(1, 2)));
-  t[3] = between(one(side * C[2].R(2, 0)), one(side * C[2].R(2, 1)), seen(fourth, 0, n), seen(fourth, 1, n));
+  const WideFrame first = pass(widen(C[4]), six, C[5]), fourth = pass(widen(kIdentity), {five.c, -five.s}, inverse(C[3]));
+  t[0] = between(seen(first, 0, n), seen(first, 1, n), one(C[0].R[0][2]), one(C[0].R[1][2]));
+  t[3] = between(one(side * C[2].R[2][0]), one(side * C[2].R[2][1]), seen(fourth, 0, n), seen(fourth, 1, n));
   const WideFrame second = pass(first, t[0], C[0]), third = pass(fourth, {t[3].c, -t[3].s}, inverse(C[2]));
   const Wide gap[3] = {third.p[0] - second.p[0], third.p[1] - second.p[1], third.p[2] - second.p[2]};
   t[1] = between(seen(second, 0, gap), seen(second, 1, gap), one(C[1].p[0]), one(C[1].p[1]));

@@ -34,13 +34,15 @@ inline RevoluteLoop revolute_loop(const Loop& loop, const Turning& turning) noex
       out.turn_place[out.turns++] = i;
       behind = loop.C[i];
     } else {
-      for (Index r = 0; r < 3; ++r) out.u[out.slides][r] = behind.R(r, 2);
+      for (Index r = 0; r < 3; ++r) out.u[out.slides][r] = behind.R[r][2];
       out.at[out.slides] = out.turns - 1;
       out.slide_place[out.slides++] = i;
       behind = compose(behind, loop.C[i]);
     }
-    out.K[out.turns - 1] = behind.R;
-    out.k[out.turns - 1] = behind.p;
+    for (Index r = 0; r < 3; ++r) {
+      for (Index c = 0; c < 3; ++c) out.K[out.turns - 1](r, c) = behind.R[r][c];
+      out.k[out.turns - 1][r] = behind.p[r];
+    }
   }
   return out;
 }

@@ -69,7 +69,7 @@ template <class Plan>
 inline Frame scaled_frame(const double (&x)[12]) noexcept {
   Frame out;
   for (std::size_t r = 0; r < 3; ++r) {
-    for (std::size_t c = 0; c < 3; ++c) out.R(r, c) = x[4 * r + c];
+    for (std::size_t c = 0; c < 3; ++c) out.R[r][c] = x[4 * r + c];
     out.p[r] = x[4 * r + 3] * (1.0 / Plan::kLength);
   }
   return out;
@@ -91,12 +91,12 @@ inline Frames chain_of(const double (&F)[N][12]) noexcept {
 template <class Arm, class Method, class Frames = elimination::Chain>
 struct SixJointArm {
   static constexpr std::size_t kCount = sizeof(Arm::kMotions) / sizeof(Arm::kMotions[0]);
-  static constexpr int kFrames = sizeof(Frames) / sizeof(elimination::Frame);
+  static constexpr int kFrames = sizeof(Frames) / sizeof(Frame);
   using Plan = typename Arm::Plan;
 
   // The chain of the moving axes, the held joints' values (cosine and sine, or a distance) merged into it.
   static void merge(const double* held, double (&F)[kFrames][12]) noexcept {
-    elimination::Frame frame = constant(0);
+    Frame frame = constant(0);
     int n = 0;
     for (std::size_t i = 0; i < kCount; ++i) {
       const auto& motion = Arm::kMotions[i];
@@ -105,9 +105,9 @@ struct SixJointArm {
         frame = constant(i + 1);
         continue;
       }
-      frame = motion.revolute ? elimination::turn(frame, held[0], held[1]) : elimination::slide(frame, held[0]);
+      frame = motion.revolute ? rotated(frame, held[0], held[1]) : slid(frame, held[0]);
       held += motion.revolute ? 2 : 1;
-      frame = elimination::compose(frame, constant(i + 1));
+      frame = compose(frame, constant(i + 1));
     }
     write(frame, F[n]);
   }
@@ -123,7 +123,7 @@ struct SixJointArm {
     found.count = 0;
     const elimination::Turning turns = turning();
     const Frames chain = elimination::chain_of<Plan, Frames>(F);
-    const elimination::Frame aim = elimination::scaled_frame<Plan>(T);
+    const Frame aim = elimination::scaled_frame<Plan>(T);
     const bool sure = Method::template solve<Plan>(chain, aim, turns, found);
     elimination::sort_rows(turns, found);
     if (found.count > Arm::kMaxSolutions) elimination::leave_most(chain, aim, turns, Arm::kMaxSolutions, found);
@@ -150,18 +150,18 @@ struct SixJointArm {
 
   static constexpr bool is_held(int joint) noexcept { return Arm::kHeld[static_cast<std::size_t>(joint)]; }
 
-  static elimination::Frame constant(std::size_t i) noexcept {
-    elimination::Frame out;
+  static Frame constant(std::size_t i) noexcept {
+    Frame out;
     for (std::size_t r = 0; r < 3; ++r) {
-      for (std::size_t c = 0; c < 3; ++c) out.R(r, c) = Arm::kFrames[i][r][c];
+      for (std::size_t c = 0; c < 3; ++c) out.R[r][c] = Arm::kFrames[i][r][c];
       out.p[r] = Arm::kFrames[i][r][3];
     }
     return out;
   }
 
-  static void write(const elimination::Frame& frame, double (&to)[12]) noexcept {
+  static void write(const Frame& frame, double (&to)[12]) noexcept {
     for (std::size_t r = 0; r < 3; ++r) {
-      for (std::size_t c = 0; c < 3; ++c) to[4 * r + c] = frame.R(r, c);
+      for (std::size_t c = 0; c < 3; ++c) to[4 * r + c] = frame.R[r][c];
       to[4 * r + 3] = frame.p[r];
     }
   }

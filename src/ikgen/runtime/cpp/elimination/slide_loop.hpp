@@ -31,14 +31,13 @@ inline OtherSide sample_other(const Loop& loop, bool first) noexcept {
     angle[2][k] = 2.0 / 3.0 * kS3[k];
   }
   const auto moved_back = [&](const Frame& X, bool slides, Index k) {
-    return slides ? slide(X, at[k]) : turn(X, kC3[k], -kS3[k]);
+    return slides ? slid(X, at[k]) : rotated(X, kC3[k], -kS3[k]);
   };
-  const Frame identity{{{1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}}, {}};
   const Frame a = inverse(loop.C[0]), b = inverse(loop.C[5]);
   double sums[14][9] = {};
   for (Index i = 0; i < 3; ++i)
     for (Index j = 0; j < 3; ++j) {
-      const Frame two = compose(moved_back(identity, !first, j), a);
+      const Frame two = compose(moved_back(kIdentity, !first, j), a);
       const std::array<double, 14> v = invariants(compose(moved_back(two, first, i), b));
       for (Index r = 0; r < 14; ++r)
         for (Index m = 0; m < 9; ++m)

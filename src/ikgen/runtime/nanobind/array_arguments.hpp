@@ -1,3 +1,19 @@
+// Plain arguments of the interface's functions: arrays, lists, and dictionaries of numbers.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+
+#include <nanobind/nanobind.h>
+
+#include <Eigen/Geometry>
+
+namespace native {
+
+namespace nb = nanobind;
+
 // An array's buffer while it is read.
 struct Buffer {
   Py_buffer view{};
@@ -20,7 +36,7 @@ struct Buffer {
   }
 };
 
-bool truth(nb::handle value) {
+inline bool truth(nb::handle value) {
   const int out = PyObject_IsTrue(value.ptr());
   if (out < 0) throw nb::python_error();
   return out != 0;
@@ -28,7 +44,7 @@ bool truth(nb::handle value) {
 
 // What follows reads arguments that are plain arrays, and says whether they are.
 
-bool read_pose(nb::handle pose, Eigen::Isometry3d& out) noexcept {
+inline bool read_pose(nb::handle pose, Eigen::Isometry3d& out) noexcept {
   const Buffer b(pose.ptr());
   if (!b.doubles() || b.view.ndim != 2 || b.view.shape[0] != 4 || b.view.shape[1] != 4) return false;
   for (int r = 0; r < 4; ++r)
@@ -37,14 +53,14 @@ bool read_pose(nb::handle pose, Eigen::Isometry3d& out) noexcept {
 }
 
 // A finite number of Python's, and of NumPy's that are one.
-bool read_number(PyObject* value, double& out) noexcept {
+inline bool read_number(PyObject* value, double& out) noexcept {
   if (!PyFloat_Check(value)) return false;
   out = PyFloat_AS_DOUBLE(value);
   return std::isfinite(out);
 }
 
 // n finite numbers: an array, a list or a tuple.
-bool read_row(nb::handle values, double* out, std::size_t n) noexcept {
+inline bool read_row(nb::handle values, double* out, std::size_t n) noexcept {
   PyObject* given = values.ptr();
   if (PyList_CheckExact(given) || PyTuple_CheckExact(given)) {
     if (static_cast<std::size_t>(PySequence_Fast_GET_SIZE(given)) != n) return false;
@@ -62,12 +78,15 @@ bool read_row(nb::handle values, double* out, std::size_t n) noexcept {
 }
 
 // Values of all that is held: a dictionary by name, or a row.
-bool read_free(nb::handle free, std::array<double, kFree>& out) noexcept {
-  if (!PyDict_CheckExact(free.ptr())) return read_row(free, out.data(), kFree);
-  if (static_cast<std::size_t>(PyDict_Size(free.ptr())) != kFree) return false;
-  for (std::size_t i = 0; i < kFree; ++i) {
-    PyObject* value = PyDict_GetItemString(free.ptr(), kFreeNames[i]);
+template <std::size_t N>
+inline bool read_free(nb::handle free, const char* const* names, std::array<double, N>& out) noexcept {
+  if (!PyDict_CheckExact(free.ptr())) return read_row(free, out.data(), N);
+  if (static_cast<std::size_t>(PyDict_Size(free.ptr())) != N) return false;
+  for (std::size_t i = 0; i < N; ++i) {
+    PyObject* value = PyDict_GetItemString(free.ptr(), names[i]);
     if (!value || !read_number(value, out.data()[i])) return false;
   }
   return true;
 }
+
+}  // namespace native
