@@ -98,7 +98,7 @@ HARMLESS = (
     ),
     HarmlessChange(
         "runtime/python/rows/row_placement.py",
-        "beyond |= value + WHOLE_TURN < high + reach",
+        "beyond |= value + turn < high + reach",
         "<", "<=", _EQUAL,
     ),
     HarmlessChange(
@@ -158,7 +158,7 @@ HARMLESS = (
     ),
     HarmlessChange(
         "runtime/python/held/branch_tracks.py",
-        "opposite, far = a * b < 0.0, turns & (np.abs(a) + np.abs(b) > pi)",
+        "opposite, far = a * b < 0.0, (period > 0.0) & (np.abs(a) + np.abs(b) > 0.5 * period)",
         "<", "<=", "a row in the middle is inside, and no other is more than half a turn away",
     ),
     HarmlessChange(

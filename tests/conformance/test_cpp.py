@@ -235,13 +235,14 @@ def test_a_seed_turns_and_orders_the_rows_that_are_there_without(name: str, fold
     seeds = random.uniform(-30.0, 30.0, arm.q.shape)
     seeds[:, list(arm.module.free)] = [arm.module.free_defaults] * len(seeds)
     found = arm.header.solve_many(arm.poses, seeds=seeds, limits=False)
-    turning = [arm.module.turns(j) and j not in arm.module.free for j in range(arm.module.dh.dof)]
+    held = arm.module.free
+    period = [0.0 if j in held else arm.module.period(j) for j in range(arm.module.dh.dof)]
     for i, seed in enumerate(seeds):
         if plain.singular[i].any() or found.singular[i].any():
             continue  # their free values are the seed's
         rows, mine = plain.q[i, : plain.count[i]], found.q[i, : found.count[i]]
         assert len(mine) == len(rows)
-        rows = rows + np.where(turning, 2 * math.pi * np.rint((seed - rows) / (2 * math.pi)), 0.0)
+        rows = rows + period * np.rint((seed - rows) / (2 * math.pi))
         order = np.argsort(np.linalg.norm(rows - seed, axis=1), kind="stable")
         assert np.abs(mine - rows[order]).max(initial=0.0) < 1e-9
 

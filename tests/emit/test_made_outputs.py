@@ -13,6 +13,7 @@ from tests.support.made_programs import made_module, with_limits
 from ikgen.emit import moveit
 from ikgen.emit.blanks import pairs
 from ikgen.emit.cpp.cpp_emitter import _depth_first, _elimination, _headers, _rough, emit_header
+from ikgen.emit.cpp.cpp_language import number
 from ikgen.emit.cpp.cpp_twist_chain import twist_lines
 from ikgen.emit.derivation import Held
 from ikgen.emit.python.python_emitter import _held_name, _held_turns
@@ -155,7 +156,7 @@ def test_a_module_is_guarded_where_no_routine_gives_its_branches() -> None:
     assert (module.lanes, module.max_solutions, without.lanes) == (8, 8, 2)
     assert [most_rows(lanes, True) for lanes in (4, 8, 16, 32)] == [8, 16, 16, 32]
     assert [most_rows(lanes, False) for lanes in (4, 32)] == [4, 32]
-    assert module.size == 1.0 and module.turns(0) and not module.turns(2)
+    assert module.size == 1.0 and module.period(0) == 2 * math.pi and module.period(2) == 0.0
 
 
 def test_a_planning_group_has_the_solver_s_joints_or_those_of_the_chain() -> None:
@@ -179,15 +180,13 @@ def test_a_planning_group_has_the_solver_s_joints_or_those_of_the_chain() -> Non
 
 
 @pytest.mark.parametrize(
-    ("free", "turning"),
-    [
-        ((), ["true", "true", "false"]), (("q0",), ["false", "true", "false"]),
-        (("q2",), ["true", "true", "false"]), (("q0", "q1"), ["false", "false", "false"]),
-    ],
-)  # fmt: skip
-def test_a_plugin_turns_what_is_not_held(free: tuple[str, ...], turning: list[str]) -> None:
+    ("free", "turning"), [((), [0, 1]), (("q0",), [1]), (("q2",), [0, 1]), (("q0", "q1"), [])]
+)
+def test_a_plugin_turns_what_is_not_held(free: tuple[str, ...], turning: list[int]) -> None:
     values = moveit._values(holding(*free), "a_package")
-    assert values["turning"] == turning and values["free_names"] == free
+    periods = [math.tau if j in turning else 0.0 for j in range(3)]
+    assert values["periods"] == [number(period) for period in periods]
+    assert values["free_names"] == free
     assert (values["who"], values["email"], values["package"]) == (
         "user",
         "user@todo.todo",

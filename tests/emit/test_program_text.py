@@ -200,33 +200,39 @@ def test_cpp_reads_inputs_by_their_places() -> None:
     assert found.constants == [("a_1", "0.5"), ("k1", "a_1 * a_1")]
 
 
-PI, PLACE = math.pi, "place<Policy>"
+PI = math.pi
+VALUE = "angle(s1, c1)"
+PLACED = f"place<Policy>(0, {VALUE}, range, kPeriod[0])"
 
 
 @pytest.mark.parametrize(
-    ("limits", "placing"),
+    ("limits", "placed"),
     [
-        ((-math.inf, math.inf), ""), ((-PI, PI), ""), ((-4.0, 4.0), ""), ((-PI, 3.0), PLACE),
-        ((-3.0, PI), PLACE), ((-math.inf, 3.0), PLACE), ((-3.0, math.inf), PLACE), ((-1.0, 1.0), PLACE),
-        ((0.0, 7.0), PLACE), ((-7.0, 0.0), PLACE),
+        ((-math.inf, math.inf), False), ((-PI, PI), False), ((-4.0, 4.0), False), ((-PI, 3.0), True),
+        ((-3.0, PI), True), ((-math.inf, 3.0), True), ((-3.0, math.inf), True), ((-1.0, 1.0), True),
+        ((0.0, 7.0), True), ((-7.0, 0.0), True),
     ],
 )  # fmt: skip
 def test_only_joints_that_may_be_outside_are_put_inside(
-    limits: tuple[float, float], placing: str
+    limits: tuple[float, float], placed: bool
 ) -> None:
     every = (-math.inf, math.inf)
     module = with_limits(made_module(), limits, every, every)
     assert ProgramText(module).joint_values() == [
-        ("angle(s1, c1)", placing), ("angle(s2, c2)", ""), ("spread<1>(held_q3)", "")
-    ]  # fmt: skip
+        (PLACED if placed else VALUE, placed),
+        ("angle(s2, c2)", False),
+        ("spread<1>(held_q3)", False),
+    ]
     module = with_limits(made_module(), every, every, limits)
-    slide = ProgramText(module).joint_values()[2][1]
-    assert slide == ("" if limits == every else "clamp")
+    value = "spread<1>(held_q3)"
+    clamped = value if limits == every else f"clamp(2, {value}, range)"
+    assert ProgramText(module).joint_values()[2] == (clamped, limits != every)
     held = replace(module, dh=replace(module.dh, free=("q0",)), free=(0,))
     held = with_limits(held, limits, every, every)
     program = replace(held.program, inputs=held.program.inputs[:3])
-    first = ProgramText(replace(held, program=program)).joint_values()[0][1]
-    assert first == ("" if limits == every else "clamp")
+    clamped = VALUE if limits == every else f"clamp(0, {VALUE}, range)"
+    first = ProgramText(replace(held, program=program)).joint_values()[0]
+    assert first == (clamped, limits != every)
 
 
 def test_cpp_lines_break_between_words() -> None:

@@ -135,7 +135,7 @@ inline constexpr double kFarthestSeed = 1e6;  // rad: neighbouring doubles are 1
 inline constexpr double kFarthest = 1e15;  // m: where neighbouring doubles are 0.1 m apart; no arm reaches beyond
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-inline double without_turns(double x) noexcept { return x - kTurn * std::nearbyint(x / kTurn); }
+inline double without_turns(double x, double turn = kTurn) noexcept { return x - turn * std::nearbyint(x / turn); }
 
 // --- machine vectors -----------------------------------------------------------------------------
 #if defined(__AVX512F__)
@@ -379,6 +379,14 @@ template <class Y, class X, int N = kCommon<Y, X>>
 }
 
 // --- joint range ---------------------------------------------------------------------------------
+inline double shortest(double gap, double turn = kTurn) noexcept {
+  return gap > 0.5 * turn ? gap - turn : gap < -0.5 * turn ? gap + turn : gap;
+}
+template <int N, bool H>
+[[gnu::always_inline]] inline Lanes<N> shortest(const LanesOf<N, H>& gap, double turn = kTurn) noexcept {
+  return gap + select(gap > 0.5 * turn, -turn, select(-0.5 * turn > gap, turn, 0.0));
+}
+
 struct Range {
   const double* lower;
   const double* upper;
@@ -406,9 +414,9 @@ template <int N, bool H>
 }
 
 template <class Policy, int N, bool H>
-[[gnu::always_inline]] inline Placed<N> place(int j, const LanesOf<N, H>& q, const Range& range) noexcept {
-  const auto up = select(range.lower[j] - Policy::kLimitReach > q, kTurn, 0.0);
-  const auto down = select(q > range.upper[j] + Policy::kLimitReach, kTurn, 0.0);
+[[gnu::always_inline]] inline Placed<N> place(int j, const LanesOf<N, H>& q, const Range& range, double turn) noexcept {
+  const auto up = select(range.lower[j] - Policy::kLimitReach > q, turn, 0.0);
+  const auto down = select(q > range.upper[j] + Policy::kLimitReach, turn, 0.0);
   return clamp(j, q + (up - down), range);
 }
 
@@ -542,8 +550,8 @@ template <class X> struct FrameOf {
 };
 using Frame = FrameOf<double>;
 
-template <class X> constexpr FrameOf<X> inverse(const FrameOf<X>& a) noexcept {
-  FrameOf<X> out{};
+template <class X> inline FrameOf<X> inverse(const FrameOf<X>& a) noexcept {
+  FrameOf<X> out;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) out.R[i][j] = a.R[j][i];
     out.p[i] = -(a.R[0][i] * a.p[0] + a.R[1][i] * a.p[1] + a.R[2][i] * a.p[2]);
@@ -884,20 +892,23 @@ template <class Arm> struct SolutionRows {
   }
 
   static double change(int j, const double* a, const double* b) noexcept {
-    const double gap = b[j] - a[j];
-    return Arm::kRevolute[j] ? without_turns(gap) : gap;
+    return within_period(j, b[j] - a[j]);
+  }
+
+  static double within_period(int j, double x) noexcept {
+    return Arm::kPeriod[j] > 0.0 ? without_turns(x, Arm::kPeriod[j]) : x;
   }
 
   static double beyond(int j, double x, double value) noexcept {
     const double gap = value - x;
-    return std::abs(Arm::kRevolute[j] && !Arm::kHeld[j] ? without_turns(gap) : gap);
+    return std::abs(Arm::kHeld[j] ? gap : within_period(j, gap));
   }
 
   static bool same(const double* a, const double* b) noexcept {
     for (int j = 0; j < Arm::kDof; ++j) {
       double gap = std::abs(a[j] - b[j]);
-      if (Arm::kRevolute[j] && gap > Policy::kCoincident) gap = std::abs(without_turns(gap));
-      const double bound = Policy::kCoincident * (Arm::kRevolute[j] ? 1.0 : std::max(std::abs(a[j]), 1.0));
+      if (gap > Policy::kCoincident) gap = std::abs(within_period(j, gap));
+      const double bound = Policy::kCoincident * (Arm::kPeriod[j] > 0.0 ? 1.0 : std::max(std::abs(a[j]), 1.0));
       if (!(gap <= bound)) return false;
     }
     return true;
@@ -925,7 +936,8 @@ template <class Arm> struct SolutionRows {
   static constexpr bool one_turn() noexcept {
     for (int j = 0; j < Arm::kDof; ++j) {
       const double low = Arm::kLower.data()[j], high = Arm::kUpper.data()[j], least = Policy::kLimitTolerance;
-      if (Arm::kRevolute[j] && !(low > -kPi && high <= kPi && high - low < kTurn - 2.0 * least)) return false;
+      const double turn = Arm::kPeriod[j];
+      if (turn > 0.0 && !(low > -0.5 * turn && high <= 0.5 * turn && high - low < turn - 2.0 * least)) return false;
     }
     return true;
   }
@@ -948,11 +960,12 @@ template <class Arm> struct SolutionRows {
     const double* seed = options.seed ? options.seed->data() : nullptr;
     for (int j = 0; j < Arm::kDof; ++j) {
       const double low = Arm::kLower.data()[j] - Policy::kLimitTolerance, high = Arm::kUpper.data()[j] + Policy::kLimitTolerance;
-      if (Arm::kRevolute[j] && !Arm::kHeld[j]) {
-        q[j] += q[j] <= -kPi ? kTurn : q[j] > kPi ? -kTurn : 0.0;
-        double shift = seed ? kTurn * std::nearbyint((seed[j] - q[j]) / kTurn) : 0.0;
-        if (options.limits && q[j] + shift < low) shift = kTurn * std::ceil((low - q[j]) / kTurn);
-        if (options.limits && q[j] + shift > high) shift = kTurn * std::floor((high - q[j]) / kTurn);
+      const double turn = Arm::kPeriod[j];
+      if (turn > 0.0 && !Arm::kHeld[j]) {
+        q[j] += q[j] <= -0.5 * turn ? turn : q[j] > 0.5 * turn ? -turn : 0.0;
+        double shift = seed ? turn * std::nearbyint((seed[j] - q[j]) / turn) : 0.0;
+        if (options.limits && q[j] + shift < low) shift = turn * std::ceil((low - q[j]) / turn);
+        if (options.limits && q[j] + shift > high) shift = turn * std::floor((high - q[j]) / turn);
         q[j] += shift;
       }
       if (!options.limits) continue;
@@ -1495,7 +1508,7 @@ template <class Arm> struct CurveParts : CurveSamples<Arm> {
     if (count == kRoom || !(std::abs(s.left) < Policy::kArrived)) return;
     double* q = found[count++];
     for (int j = 0; j < Arm::kDof; ++j)
-      q[j] = Arm::kRevolute[j] && !Arm::kHeld[j] ? without_turns(s.q[j]) : s.q[j];
+      q[j] = Arm::kHeld[j] ? s.q[j] : SolutionRows<Arm>::within_period(j, s.q[j]);
   }
 
  private:
@@ -2075,13 +2088,6 @@ template <class Arm> struct CarefulRows {
 };
 
 // --- joint bounds --------------------------------------------------------------------------------
-inline double shortest(double gap) noexcept {
-  return gap > kPi ? gap - kTurn : gap < -kPi ? gap + kTurn : gap;
-}
-template <int N, bool H> [[gnu::always_inline]] inline Lanes<N> shortest(const LanesOf<N, H>& gap) noexcept {
-  return gap + select(gap > kPi, -kTurn, select(-kPi > gap, kTurn, 0.0));
-}
-
 template <class Arm> struct JointBounds {
   static constexpr double kOpen = 1e6;  // m: a slide's limit that is none; distances from the other keep 1e-10
   int count = 0;
@@ -2091,26 +2097,27 @@ template <class Arm> struct JointBounds {
   explicit JointBounds(bool limits) noexcept {
     for (int j = 0; j < Arm::kDof && limits; ++j) {
       double low = Arm::kLower.data()[j], high = Arm::kUpper.data()[j];
-      const bool bounded = Arm::kRevolute[j] ? high - low < kTurn : low > -kInfinity || high < kInfinity;
+      const bool bounded = Arm::kPeriod[j] > 0.0 ? high - low < Arm::kPeriod[j] : low > -kInfinity || high < kInfinity;
       if (Arm::kHeld[j] || !bounded) continue;
       low = std::max(low, -kOpen);
       high = std::min(high, kOpen);
       joint[count] = j;
       middle[count] = 0.5 * (low + high);
-      if (Arm::kRevolute[j]) middle[count] = without_turns(middle[count]);
+      if (Arm::kPeriod[j] > 0.0) middle[count] = without_turns(middle[count], Arm::kPeriod[j]);
       half[count++] = 0.5 * (high - low);
     }
   }
 
   template <class X> [[gnu::always_inline]] X offset(int i, const X& q) const noexcept {
-    return Arm::kRevolute[joint[i]] ? shortest(q - middle[i]) : q - middle[i];
+    const double period = Arm::kPeriod[joint[i]];
+    return period > 0.0 ? shortest(q - middle[i], period) : q - middle[i];
   }
 
   double outside(const double* q, int& bound) const noexcept {
     double most = -kInfinity;
     for (int i = 0; i < count; ++i) {
-      const double gap = q[joint[i]] - middle[i];
-      const double off = std::abs(Arm::kRevolute[joint[i]] ? without_turns(gap) : gap) - half[i];
+      const double gap = q[joint[i]] - middle[i], period = Arm::kPeriod[joint[i]];
+      const double off = std::abs(period > 0.0 ? without_turns(gap, period) : gap) - half[i];
       if (off > most) bound = i;
       most = std::max(most, off);
     }
@@ -2400,7 +2407,7 @@ template <class Arm> struct NearestRow {
     for (int j = 0; j < Arm::kDof; ++j) {
       const double low = Arm::kLower.data()[j], high = Arm::kUpper.data()[j], middle = 0.5 * (low + high);
       if (Arm::kHeld[j]) continue;
-      if (Arm::kRevolute[j] && std::isfinite(middle)) q[j] -= kTurn * std::nearbyint((q[j] - middle) / kTurn);
+      if (Arm::kPeriod[j] > 0.0 && std::isfinite(middle)) q[j] = middle + without_turns(q[j] - middle, Arm::kPeriod[j]);
       q[j] = std::clamp(q[j], low, high);
     }
   }
@@ -2444,7 +2451,7 @@ template <class Arm> struct NearestRow {
       step /= root;
       double low, high, whole;
       bounds(j, inside, &low, &high);
-      const double half = Arm::kRevolute[j] ? kPi : Arm::kSize;
+      const double half = Arm::kPeriod[j] > 0.0 ? 0.5 * Arm::kPeriod[j] : Arm::kSize;
       const double centre = std::clamp(0.0, low + half, std::max(high - half, low + half));
       low = std::max(low, centre - half);
       high = std::min(high, centre + half);
@@ -2555,7 +2562,7 @@ template <class Arm> struct CarefulSolve {
 
   static void take_start(const Options& options, int turn, double* q) noexcept {
     for (int j = 0; j < Arm::kDof; ++j)
-      q[j] = (options.seed ? options.seed->data()[j] : 0.0) + (Arm::kRevolute[j] ? turn * Policy::kTryStep : 0.0);
+      q[j] = (options.seed ? options.seed->data()[j] : 0.0) + (Arm::kPeriod[j] > 0.0 ? turn * Policy::kTryStep : 0.0);
     for (std::size_t k = 0; k < Arm::kFreeJoints.size(); ++k) q[Arm::kFreeJoints[k]] = options.free[k];
   }
 
@@ -2651,7 +2658,7 @@ template <class Arm> struct LanePlacement {
       Lanes<N> off = spread<N>(0.0);
       for (int j = 0; j < Arm::kDof; ++j) {
         Lanes<N> q = load<N>(rows.q[j] + at);
-        if (Arm::kRevolute[j] && !Arm::kHeld[j]) q = turned(j, q, options);
+        if (Arm::kPeriod[j] > 0.0 && !Arm::kHeld[j]) q = turned(j, q, options);
         if (options.limits) {
           const Placed<N> placed = clamp(j, q, {Arm::kLower.data(), Arm::kUpper.data()});
           off = max(off, placed.off);
@@ -2674,15 +2681,16 @@ template <class Arm> struct LanePlacement {
   template <int N, bool H>
   [[gnu::always_inline]] static Lanes<N> turned(int j, const LanesOf<N, H>& given, const typename Arm::Options& options) noexcept {
     const double low = Arm::kLower.data()[j] - Policy::kLimitReach, high = Arm::kUpper.data()[j] + Policy::kLimitReach;
-    const Lanes<N> q = given + select(given > -kPi, select(given > kPi, -kTurn, 0.0), kTurn);
-    const bool one = low > -kPi && high < kPi;  // the turn inside the limits
+    const double turn = Arm::kPeriod[j], half = 0.5 * turn;
+    const Lanes<N> q = given + select(given > -half, select(given > half, -turn, 0.0), turn);
+    const bool one = low > -half && high < half;  // the turn inside the limits
     if (options.limits && one) return q;
     const double seed = options.seed ? options.seed->data()[j] : 0.0;
     const double aim = options.limits ? std::min(std::max(seed, low), high) : seed;
-    const Lanes<N> nearby = q + kTurn * nearest((aim - q) / kTurn);
+    const Lanes<N> nearby = q + turn * nearest((aim - q) / turn);
     if (!options.limits) return nearby;
-    const Lanes<N> above = select(low > nearby, nearby + kTurn, nearby);
-    return select(above > high, above - kTurn, above);
+    const Lanes<N> above = select(low > nearby, nearby + turn, nearby);
+    return select(above > high, above - turn, above);
   }
 };
 
@@ -2771,8 +2779,8 @@ template <class Arm> struct GivenSeed {
   explicit GivenSeed(const typename Arm::Joints* seed) noexcept : there(seed != nullptr) {
     for (int j = 0; j < Arm::kDof && there; ++j) {
       const double value = seed->data()[j];
-      const bool remote = Arm::kRevolute[j] && !Arm::kHeld[j] && std::abs(value) > kFarthestSeed;
-      values.data()[j] = remote ? std::fmod(value, kTurn) : value;
+      const bool remote = Arm::kPeriod[j] > 0.0 && !Arm::kHeld[j] && std::abs(value) > kFarthestSeed;
+      values.data()[j] = remote ? std::fmod(value, Arm::kPeriod[j]) : value;
       there = std::abs(value) < kInfinity;
     }
   }
@@ -3264,8 +3272,8 @@ template <class A> struct RowPreference {
 
   bool place(double* q) const noexcept {
     for (int j = 0; j < A::kDof; ++j)
-      if (A::kHeld[j] && A::kRevolute[j] && !(A::kUpper.data()[j] - A::kLower.data()[j] < kInfinity))
-        q[j] += kTurn * std::nearbyint((wanted.data()[j] - q[j]) / kTurn);
+      if (A::kHeld[j] && A::kPeriod[j] > 0.0 && !(A::kUpper.data()[j] - A::kLower.data()[j] < kInfinity))
+        q[j] += A::kPeriod[j] * std::nearbyint((wanted.data()[j] - q[j]) / A::kPeriod[j]);
     return SolutionRows<A>::place(q, options);
   }
 
@@ -3325,7 +3333,7 @@ struct Arm {
   static constexpr auto& kLower = pan_lift_ik::kLower;
   static constexpr auto& kUpper = pan_lift_ik::kUpper;
   static constexpr std::array<int, 0> kFreeJoints = {};
-  static constexpr bool kRevolute[kDof] = {true, false};
+  static constexpr double kPeriod[kDof] = {6.283185307179586, 0.0};
   static constexpr bool kHeld[kDof] = {false, false};
   static constexpr bool kArmAngle = false;
 
@@ -3391,7 +3399,7 @@ inline void Arm::branches(const Pose<P>& pose, [[maybe_unused]] const Seed& seed
   const auto real_1 = (1e-09 > abs(error));
 
   // joint values, each on the turn inside its limits
-  const auto placed_1 = place<Policy>(0, angle(s1, c1), range);
+  const auto placed_1 = place<Policy>(0, angle(s1, c1), range, kPeriod[0]);
   const auto placed_2 = clamp(1, t23, range);
 
   constexpr int n = Rows<P>::kLanes;

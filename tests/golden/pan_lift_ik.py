@@ -233,9 +233,15 @@ Row = tuple[float, ...]
 _WHOLE_TURN = 2.0 * pi
 
 
-def _without_turns(angles: Array) -> Array:
+def _without_turns(angles: Array, turn: float | Array = _WHOLE_TURN) -> Array:
     """Angles, or gaps between two on the shortest way."""
-    return np.asarray(angles - _WHOLE_TURN * np.round(angles / _WHOLE_TURN))
+    return np.asarray(angles - turn * np.round(angles / turn))
+
+
+def _within_periods(values: Array, period: tuple[float, ...]) -> Array:
+    """Joint values (..., dof), or gaps between two, within half a period."""
+    turn = np.array(period)
+    return np.where(turn > 0.0, _without_turns(values, np.where(turn > 0.0, turn, 1.0)), values)
 
 
 # Arguments as arrays of real numbers.
@@ -276,7 +282,7 @@ class _Chain:
     offset: Array
     slides: tuple[int, ...]
     drive: Array | None
-    revolute: tuple[bool, ...]
+    period: tuple[float, ...]
 
 
 def _chain_of(frames: Array, motions: tuple[_Motion, ...], dof: int) -> _Chain:
@@ -298,7 +304,7 @@ def _chain_of(frames: Array, motions: tuple[_Motion, ...], dof: int) -> _Chain:
     slides = tuple(i for i, m in enumerate(motions) if not m[1])
     drive = scale[:, None] * (joint[:, None] == np.arange(dof))
     alike = np.array_equal(drive, np.eye(dof))
-    revolute = tuple(_turns_freely([m for m in motions if m[0] == j]) for j in range(dof))
+    period = tuple(_period([m for m in motions if m[0] == j]) for j in range(dof))
     return _Chain(
         frames,
         motions,
@@ -309,16 +315,22 @@ def _chain_of(frames: Array, motions: tuple[_Motion, ...], dof: int) -> _Chain:
         offset,
         slides,
         None if alike else drive,
-        revolute,
+        period,
     )
 
 
-def _turns_freely(motions: Sequence[_Motion]) -> bool:
-    """Whether a joint's values are the same configuration where they differ by whole turns, and only
-    there."""
-    turns = [round(m[2]) for m in motions]
-    whole = all(m[1] and abs(m[2] - n) < 1e-12 for m, n in zip(motions, turns, strict=True))
-    return whole and bool(np.gcd.reduce(turns) == 1)
+def _period(motions: Sequence[_Motion]) -> float:
+    """How far apart (rad) values of a joint are that are the same configuration."""
+    speeds = np.abs([m[2] for m in motions])
+    if not motions or not all(m[1] for m in motions):
+        return 0.0
+    least = float(speeds.min())
+    alike = bool((speeds - least < 1e-12 * least).all())
+    for n in range(1, max(int(least + 1e-12), alike) + 1):
+        turns = speeds * n / least
+        if (np.abs(turns - np.round(turns)) < 1e-12 * turns).all():
+            return 2.0 * pi * n / least
+    return 0.0
 
 
 def _link_motions(chain: _Chain, parts: Array, q: Array) -> Array:
@@ -335,7 +347,7 @@ def _link_motions(chain: _Chain, parts: Array, q: Array) -> Array:
 
 def _in_line(chain: _Chain, q: ArrayLike) -> tuple[tuple[int, ...], Array]:
     """The shape of what q (..., dof) are in front, and q (k, dof)."""
-    values, dof = _real_array(q, "q"), len(chain.revolute)
+    values, dof = _real_array(q, "q"), len(chain.period)
     if values.ndim < 1 or values.shape[-1] != dof:
         raise ValueError(f"q has shape {values.shape}, expected (..., {dof})")
     return values.shape[:-1], values.reshape(-1, dof)
@@ -546,7 +558,7 @@ class _Arm:
     branches: _Branches
     branches_batch: _BranchesBatch
     beside: Array
-    turning: tuple[bool, ...]
+    period: Row
     moving: tuple[int, ...]
     together: None
     branch_kind: str
@@ -774,9 +786,7 @@ def _aims(arm: _Arm, T: Array, held: Array) -> Array:
 
 def _differences(arm: _Arm, a: Array, b: Array) -> Array:
     """b - a (..., dof), of turning joints on the shortest way."""
-    gap = b - a
-    turning = np.array(arm.chain.revolute)
-    return np.where(turning, _without_turns(gap), gap)
+    return _within_periods(b - a, arm.chain.period)
 
 
 def _slide_scale(values: Array) -> Array:
@@ -798,15 +808,13 @@ def _pairs(count: int) -> tuple[_Index, _Index]:
 
 def _is_new(arm: _Arm, row: Row, kept: Sequence[_Found]) -> bool:
     """Whether the row differs from all kept ones, whole turns aside."""
-    near, revolute = arm.policy.coincident, arm.chain.revolute[::-1]
+    near, period = arm.policy.coincident, arm.chain.period[::-1]
     for other, _ in kept:
-        for a, b, turns in zip(
-            reversed(row), reversed(other), revolute
-        ):  # the last ones differ most
+        for a, b, turn in zip(reversed(row), reversed(other), period):  # the last ones differ most
             gap = abs(a - b)
             if gap <= near:
                 continue
-            if abs((gap + pi) % _WHOLE_TURN - pi) > near if turns else gap > near * abs(a):
+            if abs(remainder(gap, turn)) > near if turn else gap > near * abs(a):
                 break
         else:
             return False
@@ -815,7 +823,7 @@ def _is_new(arm: _Arm, row: Row, kept: Sequence[_Found]) -> bool:
 
 def _same_rows(arm: _Arm, a: Array, b: Array) -> _Flags:
     """Which rows a (k, dof) are the rows b (k, dof), by what `_is_new` goes by."""
-    bound = np.where(arm.chain.revolute, 1.0, _slide_scale(a))
+    bound = np.where(np.array(arm.chain.period) > 0.0, 1.0, _slide_scale(a))
     gap = np.abs(_differences(arm, a, b))
     return np.asarray((gap <= arm.policy.coincident * bound).all(axis=1))
 
@@ -828,8 +836,8 @@ def _distinct(arm: _Arm, q: Array, valid: _Flags) -> _Flags:
     for j in reversed(range(q.shape[2])):  # the last joints differ between most rows
         value = q[:, :, j].T
         gap = np.abs(value[later] - value[earlier])
-        if arm.chain.revolute[j]:
-            same &= (gap <= near) | (np.abs(gap - _WHOLE_TURN) <= near)
+        if arm.chain.period[j]:
+            same &= (gap <= near) | (np.abs(gap - arm.chain.period[j]) <= near)
         else:
             same &= gap <= near * _slide_scale(value[later])
         if not same.any():
@@ -850,7 +858,7 @@ def _rows_at_limits(
 ) -> tuple[list[_Found], list[tuple[_Found, Row]]]:
     """`_place_rows`, and of the dropped rows those hardly outside."""
     inside, close = [], []
-    least, most = _one_turn(arm.lower, arm.upper, arm.turning, limits)
+    least, most = _one_turn(arm.lower, arm.upper, arm.period, limits)
     for row, flag in rows:
         if near is None and all(map(lt, least, row)) and all(map(lt, row, most)):
             inside.append((row, flag))
@@ -864,36 +872,36 @@ def _rows_at_limits(
 
 
 @cache
-def _one_turn(low: Row, high: Row, turning: tuple[bool, ...], limits: bool) -> tuple[Row, Row]:
+def _one_turn(low: Row, high: Row, period: Row, limits: bool) -> tuple[Row, Row]:
     """Between which values of the joints rows are on their turns, and inside the limits."""
     if not limits:
         low, high = (-inf,) * len(low), (inf,) * len(low)
-    least = tuple(max(x, -pi) if turns else x for x, turns in zip(low, turning))
-    return least, tuple(min(x, pi) if turns else x for x, turns in zip(high, turning))
+    least = tuple(max(x, -0.5 * turn) if turn else x for x, turn in zip(low, period))
+    return least, tuple(min(x, 0.5 * turn) if turn else x for x, turn in zip(high, period))
 
 
 def _place(arm: _Arm, row: Row, near: Row | None, limits: bool) -> tuple[Row | None, bool]:
     """The row on its turns, None where it is far outside."""
     out, beyond = [], False
-    for j, (q, turning, low, high) in enumerate(zip(row, arm.turning, arm.lower, arm.upper)):
+    for j, (q, turn, low, high) in enumerate(zip(row, arm.period, arm.lower, arm.upper)):
         shift = 0.0
-        if turning:
-            if q <= -pi:
-                q += _WHOLE_TURN
-            elif q > pi:
-                q -= _WHOLE_TURN
+        if turn:
+            if q <= -0.5 * turn:
+                q += turn
+            elif q > 0.5 * turn:
+                q -= turn
             if near is not None:
-                shift = _WHOLE_TURN * round((near[j] - q) / _WHOLE_TURN)
+                shift = turn * round((near[j] - q) / turn)
         if limits and not low <= q + shift <= high:
             least, most = low - arm.policy.limit_tolerance, high + arm.policy.limit_tolerance
-            if turning and q + shift < least:
-                shift = _WHOLE_TURN * ceil((least - q) / _WHOLE_TURN)
-            if turning and q + shift > most:
-                shift = _WHOLE_TURN * floor((most - q) / _WHOLE_TURN)
+            if turn and q + shift < least:
+                shift = turn * ceil((least - q) / turn)
+            if turn and q + shift > most:
+                shift = turn * floor((most - q) / turn)
             if not least <= q + shift <= most:
                 to_low, to_high = low - q, high - q
-                if turning:
-                    to_low, to_high = remainder(to_low, _WHOLE_TURN), remainder(to_high, _WHOLE_TURN)
+                if turn:
+                    to_low, to_high = remainder(to_low, turn), remainder(to_high, turn)
                 if min(abs(to_low), abs(to_high)) > arm.policy.limit_reach:
                     return None, True
                 q, shift, beyond = low if abs(to_low) < abs(to_high) else high, 0.0, True
@@ -932,27 +940,27 @@ def _place_rows_batch(
     """Rows (N, M, dof) on the right turns, in place, which of them lie inside the limits, and which may be
     hardly outside."""
     inside, close, reach = (*np.ones((2, *q.shape[:2]), dtype=bool), arm.policy.limit_reach)
-    for j, (turning, low, high) in enumerate(zip(arm.turning, arm.lower, arm.upper)):
+    for j, (turn, low, high) in enumerate(zip(arm.period, arm.lower, arm.upper)):
         value = q[..., j]
         least, most = low - arm.policy.limit_tolerance, high + arm.policy.limit_tolerance
-        if turning:
-            value = np.where(value <= -pi, value + _WHOLE_TURN, value)
-            value = np.where(value > pi, value - _WHOLE_TURN, value)
+        if turn:
+            value = np.where(value <= -0.5 * turn, value + turn, value)
+            value = np.where(value > 0.5 * turn, value - turn, value)
             turns: Array = np.zeros(1)
             if near is not None:
-                turns = np.round((near[:, None, j] - value) / _WHOLE_TURN)
+                turns = np.round((near[:, None, j] - value) / turn)
             if limits and least > -inf:
-                turns = np.maximum(turns, np.ceil((least - value) / _WHOLE_TURN))
+                turns = np.maximum(turns, np.ceil((least - value) / turn))
             if limits and most < inf:
-                turns = np.minimum(turns, np.floor((most - value) / _WHOLE_TURN))
-            value = value + _WHOLE_TURN * turns
+                turns = np.minimum(turns, np.floor((most - value) / turn))
+            value = value + turn * turns
         if limits:
             fits = (value >= least) & (value <= most)
             inside &= fits
             if close.any():
                 beyond = (value > low - reach) & (value < high + reach)
-                if turning:
-                    beyond |= value + _WHOLE_TURN < high + reach
+                if turn:
+                    beyond |= value + turn < high + reach
                 close &= beyond
             value = np.minimum(np.maximum(value, low), high)
         q[..., j] = value
@@ -1069,7 +1077,7 @@ class _Asked:
         (n,)."""
         q = np.zeros((len(self.T), len(arm.lower))) if self.near is None else self.near.copy()
         if turn is not None:
-            q[:, arm.chain.revolute] += turn[:, None]
+            q[:, np.array(arm.chain.period) > 0.0] += turn[:, None]
         q[:, list(arm.free)] = self.held[:, : len(arm.free)]
         return q
 
@@ -1485,7 +1493,7 @@ def _kept(arm: _Arm, parts: _Parts) -> tuple[_Index, Array]:
     order = np.lexsort((parts.place, parts.owner))
     order = order[np.abs(left[order]) < arm.policy.arrived]
     order = order[_places(parts.owner[order]) < _ROOM]
-    return parts.owner[order], np.where(arm.turning, _without_turns(q), q)[order]
+    return parts.owner[order], _within_periods(q, arm.period)[order]
 
 
 # What Newton steps from the closed form's rows lead to near singularities, where solutions meet.
@@ -1821,36 +1829,36 @@ def _held_there(arm: _Arm, aim: Array, row: Row, flag: bool) -> list[_Found]:
 _OPEN = 1e6  # m: a slide's limit that is none; distances from the other keep 1e-10
 
 
-def _bounded_joints(arm: _Arm) -> list[tuple[int, float, float, bool]]:
+def _bounded_joints(arm: _Arm) -> list[tuple[int, float, float, float]]:
     """Moving joints that limits bound."""
     out = []
     for j in arm.moving:
-        low, high, turns = arm.lower[j], arm.upper[j], arm.chain.revolute[j]
-        if (turns and high - low < 2.0 * pi) or (not turns and (low > -inf or high < inf)):
+        low, high, period = arm.lower[j], arm.upper[j], arm.chain.period[j]
+        if high - low < period or (not period and (low > -inf or high < inf)):
             low, high = max(low, -_OPEN), min(high, _OPEN)
-            out.append((j, 0.5 * (low + high), 0.5 * (high - low), turns))
+            out.append((j, 0.5 * (low + high), 0.5 * (high - low), period))
     return out
 
 
-def _offsets(q: Array, middle: float, turns: bool) -> Array:
+def _offsets(q: Array, middle: float, period: float) -> Array:
     """Joint values from the middle of their range, turning ones on the nearest turn."""
     x = q - middle
-    return _without_turns(x) if turns else np.asarray(x)
+    return _without_turns(x, period) if period else np.asarray(x)
 
 
 def _limit_margins_outside(arm: _Arm, q: Array, limits: bool) -> Array:
     """How far rows (..., dof) are outside the limits at most: (...,), negative inside."""
     out = np.full(q.shape[:-1], -inf)
-    for j, middle, half, turns in _bounded_joints(arm) if limits else ():
-        out = np.maximum(out, np.abs(_offsets(q[..., j], middle, turns)) - half)
+    for j, middle, half, period in _bounded_joints(arm) if limits else ():
+        out = np.maximum(out, np.abs(_offsets(q[..., j], middle, period)) - half)
     return out
 
 
 def _turned_inside(arm: _Arm, q: Array) -> Array:
     """Rows (k, dof) with turning joints on the turn that is nearest to the middle of their range."""
     out = np.array(q)
-    for j, middle, _, turns in _bounded_joints(arm):
-        out[:, j] = middle + _offsets(q[:, j], middle, turns)
+    for j, middle, _, period in _bounded_joints(arm):
+        out[:, j] = middle + _offsets(q[:, j], middle, period)
     return out
 
 
@@ -2269,7 +2277,8 @@ def _even_starts(arm: _Arm, low: Array, high: Array, count: int) -> Array:
         root = (1.0 + root) ** (1.0 / (dof + 1))
     steps = (1.0 / root) ** np.arange(1, dof + 1)
     part = (0.5 + np.arange(1, count + 1)[:, None] * steps) % 1.0
-    half = np.where(arm.chain.revolute, pi, arm.task.size)
+    period = np.array(arm.chain.period)
+    half = np.where(period > 0.0, 0.5 * period, arm.task.size)
     centre = np.clip(0.0, low + half, np.maximum(high - half, low + half))
     least, most = np.maximum(low, centre - half), np.minimum(high, centre + half)
     return np.asarray(least + part * (most - least))
@@ -2578,8 +2587,10 @@ def _seed_rows(arm: _Arm, seed: ArrayLike, *shapes: tuple[int, ...], name: str =
     if not np.isfinite(values).all():
         place = np.argwhere(~np.isfinite(values))[0].tolist()
         raise ValueError(f"{name}{place} is {values[tuple(place)]}, which is not finite")
-    far = np.array(arm.turning) & (np.abs(values) > _FARTHEST)
-    return np.where(far, np.fmod(values, 2.0 * pi), values) if far.any() else values
+    period = np.array(arm.period)
+    far = (np.abs(values) > _FARTHEST) & (period > 0.0)
+    turn = np.where(far, period, 1.0)
+    return np.where(far, np.fmod(values, turn), values) if far.any() else values
 
 
 # Poses as people have them, as homogeneous matrices.
@@ -2949,9 +2960,7 @@ def _branch_numbers(arm: _Arm, q: Array) -> list[int]:
     poses = _forward(arm.chain, q)
     with np.errstate(all="ignore"):
         rows, valid, *_ = arm.branches_batch(poses, q, _held_of(arm, q))
-        gap = rows - q[:, None, :]
-        turned = np.abs((gap + np.pi) % (2.0 * np.pi) - np.pi)
-        gap = np.where(arm.chain.revolute, turned, np.abs(gap))
+        gap = np.abs(_within_periods(rows - q[:, None, :], arm.chain.period))
         gap[:, :, list(arm.free)] = 0.0
         distance = np.where(valid, gap.max(axis=2), np.inf)
     distance[np.isnan(distance)] = np.inf
@@ -3141,8 +3150,9 @@ def _preference_costs(
     name, middle, weights = preference
     q = q.copy()
     for j in arm.free:
-        if arm.chain.revolute[j] and not isfinite(arm.upper[j] - arm.lower[j]):
-            q[..., j] += 2.0 * pi * np.round((middle[j] - q[..., j]) / (2.0 * pi))
+        period = arm.chain.period[j]
+        if period and not isfinite(arm.upper[j] - arm.lower[j]):
+            q[..., j] += period * np.round((middle[j] - q[..., j]) / period)
     q, inside, _ = _place_rows_batch(arm, q, np.tile(middle, (len(q), 1)), limits)
     if name != "dexterous":
         return q, np.asarray((q - np.array(middle)) ** 2 @ np.array(weights)), inside
@@ -3559,7 +3569,7 @@ _ARM = _Arm(
     beside=_BESIDE,
     branch_kind="number",
     elbow_end=5,
-    turning=(True, False, ),
+    period=(_CHAIN.period[0], _CHAIN.period[1], ),
     around=_rows_around,
     together=None,
     moving=(0, 1, ),

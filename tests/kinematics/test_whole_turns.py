@@ -22,10 +22,19 @@ from ikgen.kinematics.whole_turns import (
     check_couplings,
     middle_of,
     most_parts,
+    period_of,
     range_of,
-    turns_freely,
 )
 from ikgen.model.dh import DHChain
+from ikgen.runtime.python.arm.chain_kinematics import chain_of
+
+
+def round_elbow(robot: Path) -> None:
+    """Turns the elbow's axis as a rounded angle does: it is not quite parallel to the shoulder's."""
+    head, tail = robot.read_text().split('<joint name="elbow"')
+    tail = tail.replace('rpy="0 0 0"', 'rpy="1e-4 0 2e-4"', 1)
+    robot.write_text(f'{head}<joint name="elbow"{tail}')
+
 
 LIMITS = (-5.0, 7.0)  # of the crank: nearly two turns, a waist at half its value takes one
 ENDS = {"base": "base_link", "tip": "tool0", "task": "position"}
@@ -74,27 +83,75 @@ def test_a_crank_of_two_turns_is_verified_in_both_languages(tmp_path: Path) -> N
 
 
 @pytest.mark.parametrize(
-    ("ratio", "limits", "step"),
-    [(2.0, (-3.0, 3.0), "3.14159"), (0.5, (-7.0, 7.0), "12.5664"), (-3.0, (-1.2, 1.2), "2.0944")],
+    ("ratio", "limits", "rounded"),
+    [(2.0, (-3.0, 5.0), False), (0.5, (-7.0, 13.0), True), (-3.0, (1.0, 4.0), True)],
 )
-def test_limits_beyond_one_period_are_refused(
-    tmp_path: Path, ratio: float, limits: tuple[float, float], step: str
+def test_limits_beyond_one_period_have_each_row_once(
+    tmp_path: Path, ratio: float, limits: tuple[float, float], rounded: bool
 ) -> None:
-    with pytest.raises(UnsolvedChainError, match=f"solutions every {step} of 'crank'") as caught:
-        derive(request(crank_robot(tmp_path, ratio, limits)))
-    assert caught.value.exit_code == 3
-    assert "--lock crank=VALUE" in caught.value.hint
-    assert f"limits that span {step} at most" in caught.value.hint
+    """The one on the turn that is nearest to the seed, or inside the limits; also without limits."""
+    robot = crank_robot(tmp_path, ratio, limits)
+    if rounded:
+        round_elbow(robot)
+    made = derive(request(robot))
+    assert (made.module.refine == "all") is rounded
+    arm, turn = import_text(emit_module(made.module), tmp_path), 2.0 * np.pi
+    rng, period = np.random.default_rng(8), [turn / abs(ratio), turn, turn]
+    starts = np.column_stack([rng.uniform(*limits, 30), rng.uniform(-2.5, 2.5, (30, 2))])
+    for q in starts:
+        pose = arm.forward(q)
+        inside, anywhere, near = (
+            arm.solve(pose, **options).q for options in ({}, {"limits": False}, {"seed": q})
+        )
+        for rows in (inside, anywhere, near):
+            assert np.abs(np.remainder(rows - q + 0.5, period) - 0.5).max(axis=1).min() < 1e-6
+            gaps = (rows[:, None] - rows[None]) / period
+            assert (np.abs(gaps - np.round(gaps)).max(axis=2) < 1e-6).sum() == len(rows)
+        assert ((inside >= arm.LOWER) & (inside <= arm.UPPER)).all()
+        assert np.abs(anywhere[:, 0]).max() <= 0.5 * period[0] + 1e-12
+        assert np.abs(near[0] - q).max() < 1e-6
+
+
+@pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER)
+def test_a_rounded_crank_of_several_turns_is_verified_in_both_languages(tmp_path: Path) -> None:
+    robot = crank_robot(tmp_path, 0.5, (-7.0, 13.0))
+    round_elbow(robot)
+    outputs = Outputs(("python", "cpp"), tmp_path / "out", samples=300)
+    made = generate(request(robot), outputs)
+    assert sorted(made.reports) == ["cpp", "python"]
+    assert all(report.passed for report in made.reports.values())
 
 
 def test_a_slide_that_turns_a_joint_has_a_period_too(tmp_path: Path) -> None:
-    long = read(request(crank_robot(tmp_path, 7.0, (0.0, 1.0), kind="prismatic"))).dh
-    with pytest.raises(UnsolvedChainError, match=r"every 0\.897598 of 'crank'"):
-        check_couplings(long)
-    short = read(request(crank_robot(tmp_path, 7.0, (0.1, 0.5), kind="prismatic"))).dh
-    check_couplings(short)
-    assert not turns_freely(short, 0)
-    assert middle_of(short, 0) == pytest.approx(0.3)
+    for limits in ((0.0, 1.0), (0.1, 0.5)):
+        dh = read(request(crank_robot(tmp_path, 7.0, limits, kind="prismatic"))).dh
+        check_couplings(dh)
+        assert period_of(dh, 0) == 2.0 * math.pi / 7.0 and middle_of(dh, 0) == 0.0
+
+
+@pytest.mark.parametrize(
+    ("ratios", "period"),
+    [
+        ((2.0, 3.0), 1.0),
+        ((2.0, 4.0), 0.5),
+        ((0.5, -0.5), 2.0),
+        ((1.0, 0.5), 0.0),
+        ((0.5, 0.2), 0.0),
+    ],
+)
+def test_periods_of_several_followers(
+    tmp_path: Path, ratios: tuple[float, float], period: float
+) -> None:
+    """In turns; where what follows comes round together after several turns only, there is none."""
+    text = crank_robot(tmp_path, ratios[0], (-1.0, 1.0), followers=("waist", "elbow")).read_text()
+    head, tail = text.rsplit(f'multiplier="{ratios[0]!r}"', 1)
+    robot = tmp_path / "two.urdf"
+    robot.write_text(f'{head}multiplier="{ratios[1]!r}"{tail}')
+    dh = read(request(robot)).dh
+    assert period_of(dh, 0) == pytest.approx(2.0 * math.pi * period)
+    rows = [(row.driver, row.revolute, row.scale, row.offset.value) for row in dh.rows]
+    chain = chain_of(np.tile(np.eye(4), (len(rows) + 1, 1, 1)), tuple(rows), dh.dof)
+    assert chain.period[0] == pytest.approx(2.0 * math.pi * period)
 
 
 def test_ratios_of_no_whole_numbers_are_refused(tmp_path: Path) -> None:
@@ -117,9 +174,9 @@ def test_ratios_of_no_whole_numbers_are_refused(tmp_path: Path) -> None:
         check_couplings(slides)
 
 
-def test_whole_ratios_turn_freely(tmp_path: Path) -> None:
+def test_joints_by_themselves_have_a_whole_turn(tmp_path: Path) -> None:
     dh = read(request(write_robot(tmp_path / "elbow.urdf"))).dh
-    assert all(turns_freely(dh, j) for j in range(dh.dof))
+    assert all(period_of(dh, j) == 2.0 * math.pi for j in range(dh.dof))
     check_couplings(dh)
 
 

@@ -55,7 +55,8 @@ struct Arm {
   static constexpr int kDof = 2, kFree = 0, kMaxSolutions = 2, kLanes = 2, kBesides = 0;
   static constexpr std::array<double, 2> kLower = {-3.0, -2.5}, kUpper = {3.0, 7.0};
   static constexpr std::array<int, 0> kFreeJoints = {};
-  static constexpr bool kRevolute[] = {true, true}, kHeld[] = {false, false};
+  static constexpr double kPeriod[] = {ikgen_runtime::kTurn, ikgen_runtime::kTurn};
+  static constexpr bool kHeld[] = {false, false};
   static constexpr bool kWholePose = false, kFarLimits = false, kRefined = false;
   static constexpr int kFreedoms = 2;
   static constexpr bool kRounded = false, kNewton = false, kArmAngle = false;
@@ -80,7 +81,8 @@ struct Arm {
     const auto u = 1.0 + c2;
     const auto c1 = select(regular, (x * u + y * s2) * over, seed.c1);
     const auto s1 = select(regular, (y * u - x * s2) * over, seed.s1);
-    const auto q1 = place<Policy>(0, angle(s1, c1), range), q2 = place<Policy>(1, angle(s2, c2), range);
+    const auto q1 = place<Policy>(0, angle(s1, c1), range, kPeriod[0]);
+    const auto q2 = place<Policy>(1, angle(s2, c2), range, kPeriod[1]);
     constexpr int n = Rows<P>::kLanes;
     store(spread<n>(q1.q), rows.q[0]);
     store(spread<n>(q2.q), rows.q[1]);

@@ -56,7 +56,7 @@ def given_arm(branches: Any, **more: Any) -> Arm:
         "chain": chain, "task": PoseTask(1.0), "policy": runtime_policy(SolvePolicy()),
         "lower": (-2.0 * pi,) * 6, "upper": (2.0 * pi,) * 6, "free": (), "free_joints": (),
         "free_defaults": (), "most": 8, "branches": in_doubt, "branches_batch": branches,
-        "beside": np.zeros((0, 4, 4)), "turning": (True,) * 6, "moving": tuple(range(6)),
+        "beside": np.zeros((0, 4, 4)), "period": (2.0 * pi,) * 6, "moving": tuple(range(6)),
         "together": None, "branch_kind": "number", "elbow_end": 5, "around": None,
     }  # fmt: skip
     return Arm(**{**fields, **more})

@@ -100,7 +100,8 @@ def package_name(name: str) -> str:
 
 def _values(module: SolverModule, package: str) -> dict[str, object]:
     """What the templates name."""
-    turning = [module.turns(j) and j not in module.free for j in range(module.dh.dof)]
+    joints = range(module.dh.dof)
+    periods = [0.0 if j in module.free else module.period(j) for j in joints]
     who, email = name_and_email(module.maintainer or "user <user@todo.todo>")
     return {
         "m": module,
@@ -110,7 +111,7 @@ def _values(module: SolverModule, package: str) -> dict[str, object]:
         "namespace": f"{module.name}_ik",
         "joint_names": tuple(joint.name for joint in module.dh.joints),
         "free_names": module.held,
-        "turning": ["true" if turns else "false" for turns in turning],
+        "periods": [number(period) for period in periods],
         "version": _version(module.generator_version),
         "comment": comment,
         "number": number,

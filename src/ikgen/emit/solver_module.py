@@ -12,7 +12,7 @@ from ikgen.elimination.plan import EliminationPlan
 from ikgen.kinematics.displacement import displacements
 from ikgen.kinematics.forward import dh_frames
 from ikgen.kinematics.position_unit import position_unit
-from ikgen.kinematics.whole_turns import turns_freely
+from ikgen.kinematics.whole_turns import period_of
 from ikgen.model.dh import DHChain
 from ikgen.program.policy import SolvePolicy
 from ikgen.program.statements import Program
@@ -182,7 +182,6 @@ class SolverModule:
         """Length (m) that errors of position are taken relative to, at least 1."""
         return position_unit(self.dh)
 
-    def turns(self, joint: int) -> bool:
-        """Whether values of the joint that differ by whole turns are the same configuration, and no
-        others are; a mimic joint with another ratio than a whole one is in the way."""
-        return turns_freely(self.dh, joint)
+    def period(self, joint: int) -> float:
+        """How far apart (rad) values of the joint are that are the same configuration; 0 where none are."""
+        return period_of(self.dh, joint)

@@ -14,7 +14,7 @@ from ikgen.errors import UnsolvedChainError
 from ikgen.model.dh import DHChain, DHRow
 from ikgen.model.gear_ratio import MOST_PARTS, common_share, is_whole
 
-__all__ = ["check_couplings", "middle_of", "most_parts", "range_of", "turns_freely"]
+__all__ = ["check_couplings", "middle_of", "most_parts", "period_of", "range_of"]
 
 _WHOLE = 1e-12
 
@@ -22,22 +22,29 @@ _BEYOND = 1e-2
 """How far (rad) beyond its limits values of a joint are looked for: poses that lie on them have rows."""
 
 
-def turns_freely(dh: DHChain, joint: int) -> bool:
-    """Whether two values of the joint are the same configuration exactly where whole turns are between."""
-    rows = _rows(dh, joint)
-    whole = all(is_whole(row.scale) for row in rows)
-    lead = dh.lead_row(joint)
-    return lead.revolute and abs(lead.scale) == 1.0 and whole
+def period_of(dh: DHChain, joint: int) -> float:
+    """How far apart (rad) values of the joint are that are the same configuration; 0 where none are, or
+    where what the joint moves comes round together after several of its turns only."""
+    rows, lead = _rows(dh, joint), dh.lead_row(joint)
+    whole = lead.revolute and all(is_whole(row.scale / lead.scale) for row in rows)
+    if not whole or not (_alike(dh, joint) or abs(lead.scale) >= 1.0 - _WHOLE):
+        return 0.0
+    return 2.0 * math.pi / abs(lead.scale)
 
 
 def middle_of(dh: DHChain, joint: int) -> float:
-    """The value (rad or m) that an arctangent's value is counted from: 0 where turns place it, else the
-    middle of the limits, since they span one period at most (`check_couplings`)."""
+    """The value (rad or m) that an arctangent's value is counted from: 0 where periods place it, else the
+    middle of the limits, since they span one turn of what it stands for at most (`check_couplings`)."""
     row, limits = dh.lead_row(joint), dh.joints[joint].limits
     span = limits.upper - limits.lower
-    if not row.revolute or turns_freely(dh, joint) or not math.isfinite(span):
+    if not row.revolute or period_of(dh, joint) or not math.isfinite(span):
         return 0.0
     return limits.lower + 0.5 * span
+
+
+def _alike(dh: DHChain, joint: int) -> bool:
+    """Whether all rows of the joint turn as fast as each other."""
+    return all(abs(dh.follows(row)[0]) == 1.0 for row in _rows(dh, joint))
 
 
 def range_of(dh: DHChain, joint: int) -> tuple[float, float]:
@@ -45,8 +52,7 @@ def range_of(dh: DHChain, joint: int) -> tuple[float, float]:
     turns of the joint are on it and its rows do not turn alike, inside the limits."""
     lead, limits = dh.lead_row(joint), dh.joints[joint].limits
     half = (0.5 * (limits.upper - limits.lower) + _BEYOND) * abs(lead.scale)
-    alike = all(abs(dh.follows(row)[0]) == 1.0 for row in _rows(dh, joint))
-    if alike or abs(lead.scale) >= 1.0 - _WHOLE or half >= math.pi:
+    if _alike(dh, joint) or abs(lead.scale) >= 1.0 - _WHOLE or half >= math.pi:
         return -math.pi, math.pi
     middle = lead.scale * middle_of(dh, joint) + lead.offset.value
     return middle - half, middle + half
@@ -89,18 +95,15 @@ def _cause(dh: DHChain, joint: int, rows: tuple[DHRow, ...]) -> tuple[str, str] 
     if lead.revolute and not all(is_whole(row.scale / lead.scale) for row in rows):
         return _odd_ratio(dh, joint, rows)
     limits, held = dh.joints[joint].limits, dh.joints[joint].name in dh.free
-    if not lead.revolute or held or turns_freely(dh, joint):
+    if not lead.revolute or held or period_of(dh, joint):
         return None
     period = 2.0 * math.pi / abs(lead.scale)
     if limits.upper - limits.lower <= period * (1.0 + _WHOLE):
         return None
     names = " and ".join(dict.fromkeys(f"'{row.name}'" for row in rows))
-    turns = f"{names} turns {abs(lead.scale):g} times as far"
-    if len(rows) > 1:
-        turns = f"{names} come round together"
     text = (
-        f"{turns}, so a pose has solutions every {period:.6g} of '{dh.joints[joint].name}', and the limits "
-        f"span {limits.upper - limits.lower:.6g}"
+        f"{names} come round together, so a pose has solutions every {period:.6g} of "
+        f"'{dh.joints[joint].name}', and the limits span {limits.upper - limits.lower:.6g}"
     )
     return text, f"limits that span {period:.6g} at most"
 

@@ -58,7 +58,7 @@ def test_no_configurations_have_no_poses(chain: Chain) -> None:
 
 
 def test_joints_that_turn(chain: Chain) -> None:
-    assert chain.revolute == (True, False, True)
+    assert chain.period == (2 * np.pi, 0.0, 2 * np.pi)
 
 
 def test_wrong_shapes(chain: Chain) -> None:

@@ -8,20 +8,21 @@ from types import SimpleNamespace
 import numpy as np
 
 from ikgen.runtime.python.arm.limit_margins import bounded_joints, offsets, outside
+from ikgen.runtime.python.arrays.angles import WHOLE_TURN
 
 INF = math.inf
 ARM = SimpleNamespace(
     moving=(0, 1, 2, 3, 5),
     lower=np.array([-1.0, -4.0, 0.2, -INF, -1.0, -INF]),
     upper=np.array([3.0, 4.0, INF, INF, 1.0, 0.5]),
-    chain=SimpleNamespace(revolute=(True, True, False, False, True, False)),
+    chain=SimpleNamespace(period=(WHOLE_TURN, WHOLE_TURN, 0.0, 0.0, WHOLE_TURN, 0.0)),
 )
 """A turning joint with limits, one with more than a turn, a slide bounded below, one without limits, a
 joint that is held, a slide bounded above."""
 
 
 def test_joints_that_are_bounded() -> None:
-    assert [(j, turns) for j, _, _, turns in bounded_joints(ARM)] == [
+    assert [(j, period > 0.0) for j, _, _, period in bounded_joints(ARM)] == [
         (0, True), (2, False), (5, False)
     ]  # fmt: skip
     (_, middle, half, _), (_, low, wide, _), (_, high, large, _) = bounded_joints(ARM)
@@ -32,8 +33,8 @@ def test_joints_that_are_bounded() -> None:
 
 def test_a_turn_is_nothing_to_a_joint_that_turns() -> None:
     x = np.array([1.5, 1.5 + 4.0 * math.pi, 1.0 - math.pi + 0.1])
-    np.testing.assert_allclose(offsets(x, 1.0, True), [0.5, 0.5, -math.pi + 0.1])
-    np.testing.assert_allclose(offsets(x, 1.0, False), x - 1.0)
+    np.testing.assert_allclose(offsets(x, 1.0, math.tau), [0.5, 0.5, -math.pi + 0.1])
+    np.testing.assert_allclose(offsets(x, 1.0, 0.0), x - 1.0)
 
 
 def test_the_most_that_a_row_is_outside() -> None:

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from ikgen.runtime.python.arrays.angles import WHOLE_TURN
 from ikgen.runtime.python.held import branch_tracks
 from ikgen.runtime.python.held.branch_tracks import (
     _SAFETY,
@@ -26,7 +27,7 @@ ARM = SimpleNamespace(
     moving=(0,),
     lower=np.array([-1.0]),
     upper=np.array([3.0]),
-    chain=SimpleNamespace(revolute=(True,)),
+    chain=SimpleNamespace(period=(WHOLE_TURN,)),
     policy=SimpleNamespace(limit_tolerance=1e-9),
     rounded=False,
 )
@@ -70,7 +71,7 @@ def test_the_way_to_a_fold_grows_as_the_root_of_the_distance(where: int) -> None
 
 
 HELD = np.array([0.0, 0.1, 0.3, 0.35, 0.6, 0.7])
-FREE = SimpleNamespace(chain=SimpleNamespace(revolute=(False, False)))
+FREE = SimpleNamespace(chain=SimpleNamespace(period=(0.0, 0.0)))
 
 
 def rows_of(*branches: list[Callable[[float], float]], real: Any = None, folds: Any = None) -> Rows:

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from tests.support.held_arms import held_limits, imported
 
+from ikgen.runtime.python.arrays.angles import WHOLE_TURN
 from ikgen.runtime.python.held import held_joint
 from ikgen.runtime.python.held.held_joint import HeldJoint, held_range
 
@@ -64,7 +65,7 @@ def test_no_more_rows_are_taken_than_solve_gives(monkeypatch: pytest.MonkeyPatch
 
 
 def test_a_slide_counts_as_far_as_the_lengths_reach() -> None:
-    chain = SimpleNamespace(frames=np.tile(np.eye(4), (3, 1, 1)), revolute=(False, False, True))
+    chain = SimpleNamespace(frames=np.tile(np.eye(4), (3, 1, 1)), period=(0.0, 0.0, WHOLE_TURN))
     chain.frames[1:, 0, 3] = 0.5, 0.25
     T = np.eye(4)
     T[2, 3] = -2.0

@@ -14,6 +14,7 @@ from ikgen.program.policy import SolvePolicy
 from ikgen.runtime.python.arm.chain_kinematics import chain_of
 from ikgen.runtime.python.arm.solved_arm import Arm
 from ikgen.runtime.python.arm.whole_pose import PoseTask
+from ikgen.runtime.python.arrays.angles import WHOLE_TURN
 from ikgen.runtime.python.rows.row_placement import (
     apart,
     distinct,
@@ -47,7 +48,7 @@ def arm() -> Arm:
         branches=lambda T, q0, held: ([], False),
         branches_batch=lambda T, q0, held: (T, T > 0.0, T > 0.0, T > 0.0, T > 0.0),
         beside=np.empty((0, 4, 4)),
-        turning=(True, True, True, False, False),
+        period=(WHOLE_TURN, WHOLE_TURN, WHOLE_TURN, 0.0, 0.0),
         moving=(0, 1, 2, 3),
         together=None,
         branch_kind="number",

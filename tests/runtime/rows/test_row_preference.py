@@ -14,6 +14,7 @@ from ikgen.program.policy import SolvePolicy
 from ikgen.runtime.python.arm.chain_kinematics import chain_of, jacobian
 from ikgen.runtime.python.arm.solved_arm import Arm
 from ikgen.runtime.python.arm.whole_pose import PoseTask
+from ikgen.runtime.python.arrays.angles import WHOLE_TURN
 from ikgen.runtime.python.rows.row_preference import preference_costs, preference_of
 
 Array = NDArray[np.float64]
@@ -34,7 +35,7 @@ def arm() -> Arm:
         lower=LOWER, upper=UPPER, free=(5,), free_joints=("held",), free_defaults=(0.0,), most=8,
         branches=lambda T, q0, held: ([], False),
         branches_batch=lambda T, q0, held: (T, T > 0.0, T > 0.0, T > 0.0, T > 0.0),
-        beside=np.empty((0, 4, 4)), turning=(True, True, True, False, True, False),
+        beside=np.empty((0, 4, 4)), period=(WHOLE_TURN, WHOLE_TURN, WHOLE_TURN, 0.0, WHOLE_TURN, 0.0),
         moving=(0, 1, 2, 3, 4), together=None, branch_kind="number", elbow_end=0, around=None,
     )  # fmt: skip
 

@@ -10,13 +10,14 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from ikgen.runtime.python.arrays.angles import WHOLE_TURN
 from ikgen.runtime.python.singular import curve_parts
 from ikgen.runtime.python.singular.curve_parts import Parts, look, look_between
 from ikgen.runtime.python.singular.fold_pair import Reduced
 
 Array = NDArray[np.float64]
 POLICY = SimpleNamespace(arrived=0.5e-9, fold_reach=10.0)
-LINE: Any = SimpleNamespace(moving=(0,), policy=POLICY, turning=(True,))
+LINE: Any = SimpleNamespace(moving=(0,), policy=POLICY, period=(WHOLE_TURN,))
 
 
 def give(monkeypatch: pytest.MonkeyPatch, sample: Callable[[Reduced], Reduced]) -> None:
@@ -189,7 +190,10 @@ def test_two_solutions_are_found_that_the_cubic_between_others_hides(
     monkeypatch.setattr(curve_parts, "samples_beside", lambda arm, q, T: on_line(q[:, 0], roots))
     q, to = np.array([[-1.0]]), np.array([[1.0]])
     line: Any = SimpleNamespace(
-        moving=(0,), policy=POLICY, turning=(True,), chain=SimpleNamespace(revolute=(True,))
+        moving=(0,),
+        policy=POLICY,
+        period=(WHOLE_TURN,),
+        chain=SimpleNamespace(period=(WHOLE_TURN,)),
     )
     whose, found = look_between(line, q, to, np.zeros((1, 4, 4)))
     assert not whose.any()

@@ -13,12 +13,13 @@ from tests.support.cpp_modules import solver_module
 from tests.support.solving import import_text
 
 from ikgen.emit.python.python_emitter import emit_module
+from ikgen.runtime.python.arrays.angles import WHOLE_TURN
 from ikgen.runtime.python.rows.row_links import differences
 from ikgen.runtime.python.singular.meeting_rows import Starts, _fresh, leads_of, rows_nearby
 
 Array = NDArray[np.float64]
 ARM: Any = SimpleNamespace(
-    chain=SimpleNamespace(revolute=(True, False)),
+    chain=SimpleNamespace(period=(WHOLE_TURN, 0.0)),
     policy=SimpleNamespace(coincident=1e-6, alike=0.05),
     beside=np.eye(4)[None],
 )

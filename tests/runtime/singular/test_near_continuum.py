@@ -16,6 +16,7 @@ from tests.support.solving import emitted, import_text
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.kinematics.modified_dh import to_dh
 from ikgen.runtime.python.arm.chain_kinematics import forward
+from ikgen.runtime.python.arrays.angles import WHOLE_TURN
 from ikgen.runtime.python.singular import curve_parts, curve_samples, fold_pair, near_continuum
 from ikgen.runtime.python.singular.curve_parts import look
 from ikgen.runtime.python.singular.fold_pair import Reduced
@@ -30,8 +31,8 @@ from ikgen.runtime.python.singular.near_continuum import (
 
 Array = NDArray[np.float64]
 POLICY = SimpleNamespace(arrived=0.5e-9, try_step=np.pi / 8, fold_reach=10.0)
-ANGLE: Any = SimpleNamespace(revolute=(True,))
-LINE: Any = SimpleNamespace(moving=(0,), policy=POLICY, turning=(True,), chain=ANGLE)
+ANGLE: Any = SimpleNamespace(period=(WHOLE_TURN,))
+LINE: Any = SimpleNamespace(moving=(0,), policy=POLICY, period=(WHOLE_TURN,), chain=ANGLE)
 
 
 @pytest.fixture(scope="module")
@@ -191,7 +192,7 @@ def test_a_curve_is_back_where_it_was_in_the_same_sense() -> None:
 
 def test_a_curve_is_back_along_its_own_direction_alone() -> None:
     pair: Any = SimpleNamespace(
-        moving=(0, 1), policy=POLICY, chain=SimpleNamespace(revolute=(True, True))
+        moving=(0, 1), policy=POLICY, chain=SimpleNamespace(period=(WHOLE_TURN, WHOLE_TURN))
     )
     none = np.zeros(1)
 

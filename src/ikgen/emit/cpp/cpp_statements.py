@@ -213,26 +213,28 @@ class ProgramText:
 
     # -- results --------------------------------------------------------------------------------
 
-    def joint_values(self) -> list[tuple[str, str]]:
-        """Per joint, base to tip, the text of its value, and the function that puts it inside the limits
-        ("": none can be outside, since they span a whole turn)."""
+    def joint_values(self) -> list[tuple[str, bool]]:
+        """Per joint, base to tip, the text of its value, and whether that is one put inside the limits:
+        none can be outside where they span a whole turn."""
         held = {one.name for one in self.program.inputs_of(HeldValue)}
         out = []
         for one in sorted(self.program.outputs, key=lambda output: output.joint):
             text = expression(CPP, one.value)
             if operand_names(one.value) <= held | self.fixed.keys():
                 text = f"spread<1>({text})"
-            out.append((text, self._placing(one.joint)))
+            out.append(self._placed(one.joint, text))
         return out
 
-    def _placing(self, joint: int) -> str:
+    def _placed(self, joint: int, value: str) -> tuple[str, bool]:
         limits = self.module.dh.joints[joint].limits
-        turning = self.module.turns(joint) and joint not in self.module.free
+        half = 0.0 if joint in self.module.free else 0.5 * self.module.period(joint)
         if math.isinf(limits.lower) and math.isinf(limits.upper):
-            return ""
-        if turning and limits.lower <= -math.pi and limits.upper >= math.pi:
-            return ""
-        return "place<Policy>" if turning else "clamp"
+            return value, False
+        if half and limits.lower <= -half and limits.upper >= half:
+            return value, False
+        if half:
+            return f"place<Policy>({joint}, {value}, range, kPeriod[{joint}])", True
+        return f"clamp({joint}, {value}, range)", True
 
 
 def _calls(operand: Operand) -> bool:

@@ -9,7 +9,7 @@
 namespace ikgen_runtime {
 
 // A copy of a seed without the turns that doubles cannot tell apart: it may lie where rows are written. Arm: kDof,
-// kRevolute, kHeld, Joints.
+// kPeriod, kHeld, Joints.
 template <class Arm> struct GivenSeed {
   typename Arm::Joints values;
   bool there;  // and all numbers
@@ -17,8 +17,8 @@ template <class Arm> struct GivenSeed {
   explicit GivenSeed(const typename Arm::Joints* seed) noexcept : there(seed != nullptr) {
     for (int j = 0; j < Arm::kDof && there; ++j) {
       const double value = seed->data()[j];
-      const bool remote = Arm::kRevolute[j] && !Arm::kHeld[j] && std::abs(value) > kFarthestSeed;
-      values.data()[j] = remote ? std::fmod(value, kTurn) : value;
+      const bool remote = Arm::kPeriod[j] > 0.0 && !Arm::kHeld[j] && std::abs(value) > kFarthestSeed;
+      values.data()[j] = remote ? std::fmod(value, Arm::kPeriod[j]) : value;
       there = std::abs(value) < kInfinity;
     }
   }

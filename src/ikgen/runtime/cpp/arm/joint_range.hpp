@@ -6,6 +6,15 @@
 
 namespace ikgen_runtime {
 
+// The difference of two angles within a turn of each other, on the shortest way.
+inline double shortest(double gap, double turn = kTurn) noexcept {
+  return gap > 0.5 * turn ? gap - turn : gap < -0.5 * turn ? gap + turn : gap;
+}
+template <int N, bool H>
+[[gnu::always_inline]] inline Lanes<N> shortest(const LanesOf<N, H>& gap, double turn = kTurn) noexcept {
+  return gap + select(gap > 0.5 * turn, -turn, select(-0.5 * turn > gap, turn, 0.0));
+}
+
 struct Range {
   const double* lower;
   const double* upper;
@@ -33,11 +42,11 @@ template <int N, bool H>
   return {inside, abs(q - inside)};
 }
 
-// Value of joint j, given in (-pi, pi], on the whole turn that lies in the range, or hardly outside.
+// Value of joint j, given in (-turn / 2, turn / 2], on the turn that lies in the range, or hardly outside.
 template <class Policy, int N, bool H>
-[[gnu::always_inline]] inline Placed<N> place(int j, const LanesOf<N, H>& q, const Range& range) noexcept {
-  const auto up = select(range.lower[j] - Policy::kLimitReach > q, kTurn, 0.0);
-  const auto down = select(q > range.upper[j] + Policy::kLimitReach, kTurn, 0.0);
+[[gnu::always_inline]] inline Placed<N> place(int j, const LanesOf<N, H>& q, const Range& range, double turn) noexcept {
+  const auto up = select(range.lower[j] - Policy::kLimitReach > q, turn, 0.0);
+  const auto down = select(q > range.upper[j] + Policy::kLimitReach, turn, 0.0);
   return clamp(j, q + (up - down), range);
 }
 

@@ -12,6 +12,6 @@ inline constexpr double kFarthest = 1e15;  // m: where neighbouring doubles are 
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // An angle without its whole turns, or a gap between two on the shortest way: from -pi to pi.
-inline double without_turns(double x) noexcept { return x - kTurn * std::nearbyint(x / kTurn); }
+inline double without_turns(double x, double turn = kTurn) noexcept { return x - turn * std::nearbyint(x / turn); }
 
 }  // namespace ikgen_runtime

@@ -106,7 +106,7 @@ template <class Arm> struct BranchArc {
     for (int k = 0; k < kMoving; ++k) out.q[kJoints[k]] += part * along[k];
     out.held += part * along[kMoving];
     for (int i = 0; i < kSteps; ++i) {
-      const double left = std::copysign(half, at) - sweep.bounds.offset(bound, without_turns(out.q[joint]));
+      const double left = std::copysign(half, at) - sweep.bounds.offset(bound, SolutionRows<Arm>::within_period(joint, out.q[joint]));
       const double size = step(out, row, left);
       if (!(size < kFar)) return false;
       if (size < kNearly) return finish(out);
@@ -117,7 +117,7 @@ template <class Arm> struct BranchArc {
   // Turns in (-pi, pi], and how far that is outside.
   bool finish(Point& p) const noexcept {
     for (int k = 0; k < kMoving; ++k)
-      if (Arm::kRevolute[kJoints[k]]) p.q[kJoints[k]] = without_turns(p.q[kJoints[k]]);
+      p.q[kJoints[k]] = SolutionRows<Arm>::within_period(kJoints[k], p.q[kJoints[k]]);
     p.off = outside(p.q);
     return true;
   }

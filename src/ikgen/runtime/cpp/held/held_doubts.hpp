@@ -130,7 +130,7 @@ template <class Arm> struct HeldDoubts {
       const Lanes<N> x = bounds.offset(i, load<N>(a.q[j] + at)), y = Sample::within(j, x + moved[j]);
       const double reach = bounds.half[i] + Arm::Policy::kLimitTolerance;  // of rows that are taken as inside
       const Lanes<N> left = reach - abs(x), right = reach - abs(y), slack = off[j] + kRoundOff;
-      const auto remote = (0.0 > x * y) & (abs(x) + abs(y) > (Arm::kRevolute[j] ? kPi : kInfinity));
+      const auto remote = (0.0 > x * y) & (abs(x) + abs(y) > (Arm::kPeriod[j] > 0.0 ? 0.5 * Arm::kPeriod[j] : kInfinity));
       const auto opposite = (0.0 > x * y) & (!remote);
       dead = dead | (w.go & (-slack > left) & (-slack > right) & (!opposite));
       const auto clear = (left > slack) & (right > slack) & (!remote);

@@ -55,9 +55,9 @@ template <class Arm, class Solver> struct HeldGridSearch {
     const int j = Arm::kFreeJoints[static_cast<std::size_t>(k)];
     const double middle = descent.preference.wanted.data()[j];
     double low = Arm::kLower.data()[j], high = Arm::kUpper.data()[j];
-    if (Arm::kRevolute[j] && !(descent.preference.options.limits && high - low < kInfinity)) {
-      low = -kPi;
-      high = kPi;
+    if (Arm::kPeriod[j] > 0.0 && !(descent.preference.options.limits && high - low < kInfinity)) {
+      low = -0.5 * Arm::kPeriod[j];
+      high = -low;
     }
     const SlideRange<Arm> range(descent.pose.translation().data(), j);
     const double nearby = std::min(std::max(range.low, low), high), remote = std::min(std::max(range.high, low), high);

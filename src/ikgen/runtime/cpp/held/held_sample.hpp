@@ -99,7 +99,7 @@ template <class Arm> struct HeldSample {
     return within(j, to - from);
   }
   template <class X> [[gnu::always_inline]] static X within(int j, const X& x) noexcept {
-    return Arm::kRevolute[j] ? shortest(x) : x;
+    return Arm::kPeriod[j] > 0.0 ? shortest(x, Arm::kPeriod[j]) : x;
   }
 
  private:
@@ -147,7 +147,7 @@ template <class Arm> struct HeldSample {
 
   // A joint's value, no more than half a turn from 0.
   static double turned(int j, double x) noexcept {
-    return Arm::kRevolute[j] && !Arm::kHeld[j] ? without_turns(x) : x;
+    return Arm::kPeriod[j] > 0.0 && !Arm::kHeld[j] ? without_turns(x, Arm::kPeriod[j]) : x;
   }
 
   // Takes the rows of the pose, or of one beside it, refined where that is needed: in lanes where all are, and not at all if

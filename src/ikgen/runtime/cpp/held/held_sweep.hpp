@@ -54,7 +54,11 @@ template <class Arm> struct HeldSweep {
     constexpr int j = Arm::kFreeJoints[0];
     const double lower = Arm::kLower.data()[j], upper = Arm::kUpper.data()[j];
     const bool bounded = upper - lower < kInfinity;
-    if (Arm::kRevolute[j] && !(limits && bounded)) return;
+    if (Arm::kPeriod[j] > 0.0 && !(limits && bounded)) {
+      low = -0.5 * Arm::kPeriod[j];
+      high = -low;
+      return;
+    }
     const double remote = bounded ? kInfinity : reach();
     low = std::max(lower, -remote);
     high = std::min(upper, remote);
@@ -65,7 +69,7 @@ template <class Arm> struct HeldSweep {
     double remote = pose.translation().norm();
     for (const auto& F : Arm::kFrames) remote += std::sqrt(F[0][3] * F[0][3] + F[1][3] * F[1][3] + F[2][3] * F[2][3]);
     for (int j = 0; j < Arm::kDof; ++j)
-      if (!Arm::kRevolute[j] && Arm::kUpper.data()[j] - Arm::kLower.data()[j] < kInfinity)
+      if (!(Arm::kPeriod[j] > 0.0) && Arm::kUpper.data()[j] - Arm::kLower.data()[j] < kInfinity)
         remote += std::max(std::abs(Arm::kLower.data()[j]), std::abs(Arm::kUpper.data()[j]));
     return remote;
   }

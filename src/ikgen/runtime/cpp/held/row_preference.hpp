@@ -32,8 +32,8 @@ template <class A> struct RowPreference {
   // Puts a row on the turns that limits and preference ask for; false where it is outside the limits.
   bool place(double* q) const noexcept {
     for (int j = 0; j < A::kDof; ++j)
-      if (A::kHeld[j] && A::kRevolute[j] && !(A::kUpper.data()[j] - A::kLower.data()[j] < kInfinity))
-        q[j] += kTurn * std::nearbyint((wanted.data()[j] - q[j]) / kTurn);
+      if (A::kHeld[j] && A::kPeriod[j] > 0.0 && !(A::kUpper.data()[j] - A::kLower.data()[j] < kInfinity))
+        q[j] += A::kPeriod[j] * std::nearbyint((wanted.data()[j] - q[j]) / A::kPeriod[j]);
     return SolutionRows<A>::place(q, options);
   }
 

@@ -143,9 +143,10 @@ template <class Arm> struct LaneNewton {
     Lanes<N> off = spread<N>(0.0);
     for (int j = 0; j < Arm::kDof; ++j) {
       Lanes<N> q = chain.q[j];
-      if (Arm::kRevolute[j] && !Arm::kHeld[j]) q = q + select(q > kPi, -kTurn, select(-kPi > q, kTurn, 0.0));
-      const Placed<N> placed =
-          Arm::kRevolute[j] && !Arm::kHeld[j] ? place<Policy>(j, q, range) : clamp(j, q, range);
+      constexpr auto& period = Arm::kPeriod;
+      const bool turns = period[j] > 0.0 && !Arm::kHeld[j];
+      if (turns) q = shortest(q, period[j]);
+      const Placed<N> placed = turns ? place<Policy>(j, q, range, period[j]) : clamp(j, q, range);
       off = max(off, placed.off);
       store(select(good, placed.q, load<N>(rows.q[j] + at)), rows.q[j] + at);
     }

@@ -10,18 +10,18 @@
 
 namespace ikgen_runtime {
 
-// Arm: kDof, kLower, kUpper; kRevolute and kHeld, a flag a joint; Options, Policy, Rows<P>.
+// Arm: kDof, kLower, kUpper; kPeriod and kHeld, as of SolutionRows; Options, Policy, Rows<P>.
 template <class Arm> struct LanePlacement {
   using Policy = typename Arm::Policy;
 
-  // Rows that cannot be placed are found no more; those in doubt take Newton steps. Angles are given within a turn of (-pi, pi].
+  // Rows that cannot be placed are found no more; those in doubt take Newton steps. Values are given within a turn of the one around 0.
   template <class Rows> static void apply(const typename Arm::Options& options, Rows& rows) noexcept {
     constexpr int N = Rows::kLanes < kNative ? Rows::kLanes : kNative;
     for (int at = 0; at < Rows::kLanes; at += N) {
       Lanes<N> off = spread<N>(0.0);
       for (int j = 0; j < Arm::kDof; ++j) {
         Lanes<N> q = load<N>(rows.q[j] + at);
-        if (Arm::kRevolute[j] && !Arm::kHeld[j]) q = turned(j, q, options);
+        if (Arm::kPeriod[j] > 0.0 && !Arm::kHeld[j]) q = turned(j, q, options);
         if (options.limits) {
           const Placed<N> placed = clamp(j, q, {Arm::kLower.data(), Arm::kUpper.data()});
           off = max(off, placed.off);
@@ -46,15 +46,16 @@ template <class Arm> struct LanePlacement {
   template <int N, bool H>
   [[gnu::always_inline]] static Lanes<N> turned(int j, const LanesOf<N, H>& given, const typename Arm::Options& options) noexcept {
     const double low = Arm::kLower.data()[j] - Policy::kLimitReach, high = Arm::kUpper.data()[j] + Policy::kLimitReach;
-    const Lanes<N> q = given + select(given > -kPi, select(given > kPi, -kTurn, 0.0), kTurn);
-    const bool one = low > -kPi && high < kPi;  // the turn inside the limits
+    const double turn = Arm::kPeriod[j], half = 0.5 * turn;
+    const Lanes<N> q = given + select(given > -half, select(given > half, -turn, 0.0), turn);
+    const bool one = low > -half && high < half;  // the turn inside the limits
     if (options.limits && one) return q;
     const double seed = options.seed ? options.seed->data()[j] : 0.0;
     const double aim = options.limits ? std::min(std::max(seed, low), high) : seed;
-    const Lanes<N> nearby = q + kTurn * nearest((aim - q) / kTurn);
+    const Lanes<N> nearby = q + turn * nearest((aim - q) / turn);
     if (!options.limits) return nearby;
-    const Lanes<N> above = select(low > nearby, nearby + kTurn, nearby);
-    return select(above > high, above - kTurn, above);
+    const Lanes<N> above = select(low > nearby, nearby + turn, nearby);
+    return select(above > high, above - turn, above);
   }
 };
 

@@ -18,7 +18,7 @@ template <class Arm> struct RowSums {
     for (int at = 0; at < Rows::kLanes; at += N) {
       Lanes<N> sum = spread<N>(0.0);
       for (int j = 0; j < Arm::kDof; ++j)
-        if (Arm::kRevolute[j]) sum = sum + multiple(j) * load<N>(rows.q[j] + at);
+        if (Arm::kPeriod[j] > 0.0) sum = sum + multiple(j) * load<N>(rows.q[j] + at);
       store(sum - kTurn * nearest(sum / kTurn), sums + at);
     }
   }
@@ -35,7 +35,7 @@ template <class Arm> struct RowSums {
   }
 
  private:
-  static constexpr double multiple(int j) noexcept { return j + 1.0; }
+  static constexpr double multiple(int j) noexcept { return Arm::kPeriod[j] > 0.0 ? (j + 1.0) * (kTurn / Arm::kPeriod[j]) : 0.0; }
 
   // What rows that are the same can have between their sums.
   static constexpr double bound() noexcept {

@@ -17,7 +17,8 @@ template <class Arm> struct RowPlaces {
   std::array<bool, kRoom> singular;
 };
 
-// The rows of one answer. Arm: kDof, kMaxSolutions, kLower, kUpper; kRevolute and kHeld, a flag a joint; Options,
+// The rows of one answer. Arm: kDof, kMaxSolutions, kLower, kUpper; kPeriod, how far apart values of a joint
+// are that are the same configuration (rad; 0: none are); kHeld, a flag a joint; Options,
 // Solutions, Policy. Out: Solutions, or what has its members and more room.
 template <class Arm> struct SolutionRows {
   using Options = typename Arm::Options;
@@ -37,22 +38,26 @@ template <class Arm> struct SolutionRows {
 
   // The change of a joint from one row to another, the shortest way.
   static double change(int j, const double* a, const double* b) noexcept {
-    const double gap = b[j] - a[j];
-    return Arm::kRevolute[j] ? without_turns(gap) : gap;
+    return within_period(j, b[j] - a[j]);
+  }
+
+  // A joint's value, or a change of it, within half a period.
+  static double within_period(int j, double x) noexcept {
+    return Arm::kPeriod[j] > 0.0 ? without_turns(x, Arm::kPeriod[j]) : x;
   }
 
   // How far a joint is from a value, the shortest way.
   static double beyond(int j, double x, double value) noexcept {
     const double gap = value - x;
-    return std::abs(Arm::kRevolute[j] && !Arm::kHeld[j] ? without_turns(gap) : gap);
+    return std::abs(Arm::kHeld[j] ? gap : within_period(j, gap));
   }
 
   // Whether two rows are the same, whole turns aside; long slides count relative to their length.
   static bool same(const double* a, const double* b) noexcept {
     for (int j = 0; j < Arm::kDof; ++j) {
       double gap = std::abs(a[j] - b[j]);
-      if (Arm::kRevolute[j] && gap > Policy::kCoincident) gap = std::abs(without_turns(gap));
-      const double bound = Policy::kCoincident * (Arm::kRevolute[j] ? 1.0 : std::max(std::abs(a[j]), 1.0));
+      if (gap > Policy::kCoincident) gap = std::abs(within_period(j, gap));
+      const double bound = Policy::kCoincident * (Arm::kPeriod[j] > 0.0 ? 1.0 : std::max(std::abs(a[j]), 1.0));
       if (!(gap <= bound)) return false;
     }
     return true;
@@ -79,11 +84,12 @@ template <class Arm> struct SolutionRows {
     return false;
   }
 
-  // Whether joints have one turn inside the limits, that between -pi and pi.
+  // Whether joints have one turn inside the limits, that around 0.
   static constexpr bool one_turn() noexcept {
     for (int j = 0; j < Arm::kDof; ++j) {
       const double low = Arm::kLower.data()[j], high = Arm::kUpper.data()[j], least = Policy::kLimitTolerance;
-      if (Arm::kRevolute[j] && !(low > -kPi && high <= kPi && high - low < kTurn - 2.0 * least)) return false;
+      const double turn = Arm::kPeriod[j];
+      if (turn > 0.0 && !(low > -0.5 * turn && high <= 0.5 * turn && high - low < turn - 2.0 * least)) return false;
     }
     return true;
   }
@@ -108,11 +114,12 @@ template <class Arm> struct SolutionRows {
     const double* seed = options.seed ? options.seed->data() : nullptr;
     for (int j = 0; j < Arm::kDof; ++j) {
       const double low = Arm::kLower.data()[j] - Policy::kLimitTolerance, high = Arm::kUpper.data()[j] + Policy::kLimitTolerance;
-      if (Arm::kRevolute[j] && !Arm::kHeld[j]) {
-        q[j] += q[j] <= -kPi ? kTurn : q[j] > kPi ? -kTurn : 0.0;
-        double shift = seed ? kTurn * std::nearbyint((seed[j] - q[j]) / kTurn) : 0.0;
-        if (options.limits && q[j] + shift < low) shift = kTurn * std::ceil((low - q[j]) / kTurn);
-        if (options.limits && q[j] + shift > high) shift = kTurn * std::floor((high - q[j]) / kTurn);
+      const double turn = Arm::kPeriod[j];
+      if (turn > 0.0 && !Arm::kHeld[j]) {
+        q[j] += q[j] <= -0.5 * turn ? turn : q[j] > 0.5 * turn ? -turn : 0.0;
+        double shift = seed ? turn * std::nearbyint((seed[j] - q[j]) / turn) : 0.0;
+        if (options.limits && q[j] + shift < low) shift = turn * std::ceil((low - q[j]) / turn);
+        if (options.limits && q[j] + shift > high) shift = turn * std::floor((high - q[j]) / turn);
         q[j] += shift;
       }
       if (!options.limits) continue;

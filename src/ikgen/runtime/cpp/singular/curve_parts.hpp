@@ -64,7 +64,7 @@ template <class Arm> struct CurveParts : CurveSamples<Arm> {
     if (count == kRoom || !(std::abs(s.left) < Policy::kArrived)) return;
     double* q = found[count++];
     for (int j = 0; j < Arm::kDof; ++j)
-      q[j] = Arm::kRevolute[j] && !Arm::kHeld[j] ? without_turns(s.q[j]) : s.q[j];
+      q[j] = Arm::kHeld[j] ? s.q[j] : SolutionRows<Arm>::within_period(j, s.q[j]);
   }
 
  private:

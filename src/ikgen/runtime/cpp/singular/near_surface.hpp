@@ -33,8 +33,8 @@ template <class Arm> struct NearSurface {
       const int places = searched++ < kWide ? kPlaces : 1;
       for (int i = 0; i < places * places; ++i) {
         Sample s = first;
-        s.q[turning[0]] += kTurn / kPlaces * (i / kPlaces);
-        s.q[turning[1]] += kTurn / kPlaces * (i % kPlaces);
+        s.q[turning[0]] += Arm::kPeriod[turning[0]] / kPlaces * (i / kPlaces);
+        s.q[turning[1]] += Arm::kPeriod[turning[1]] / kPlaces * (i % kPlaces);
         if (i > 0) find_plane(PoseError<Arm>(s.q, aim), s);
         settle(s);
         descend(s);
@@ -129,7 +129,7 @@ template <class Arm> struct NearSurface {
     double most = -1.0;
     for (int a = 0; a < kMoving; ++a)
       for (int b = 0; b < a; ++b) {
-        const bool turn = Arm::kRevolute[kJoints[a]] && Arm::kRevolute[kJoints[b]];
+        const bool turn = Arm::kPeriod[kJoints[a]] > 0.0 && Arm::kPeriod[kJoints[b]] > 0.0;
         const double area = std::abs(s.still[0][a] * s.still[1][b] - s.still[0][b] * s.still[1][a]);
         if (!(turn && area > most)) continue;
         most = area;

@@ -86,7 +86,7 @@ template <class Arm> struct CarefulSolve {
   // Values for joints that the pose leaves free: the seed's, those of revolute ones turned; held ones as they are.
   static void take_start(const Options& options, int turn, double* q) noexcept {
     for (int j = 0; j < Arm::kDof; ++j)
-      q[j] = (options.seed ? options.seed->data()[j] : 0.0) + (Arm::kRevolute[j] ? turn * Policy::kTryStep : 0.0);
+      q[j] = (options.seed ? options.seed->data()[j] : 0.0) + (Arm::kPeriod[j] > 0.0 ? turn * Policy::kTryStep : 0.0);
     for (std::size_t k = 0; k < Arm::kFreeJoints.size(); ++k) q[Arm::kFreeJoints[k]] = options.free[k];
   }
 

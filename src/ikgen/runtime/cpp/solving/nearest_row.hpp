@@ -111,7 +111,7 @@ template <class Arm> struct NearestRow {
     for (int j = 0; j < Arm::kDof; ++j) {
       const double low = Arm::kLower.data()[j], high = Arm::kUpper.data()[j], middle = 0.5 * (low + high);
       if (Arm::kHeld[j]) continue;
-      if (Arm::kRevolute[j] && std::isfinite(middle)) q[j] -= kTurn * std::nearbyint((q[j] - middle) / kTurn);
+      if (Arm::kPeriod[j] > 0.0 && std::isfinite(middle)) q[j] = middle + without_turns(q[j] - middle, Arm::kPeriod[j]);
       q[j] = std::clamp(q[j], low, high);
     }
   }
@@ -160,7 +160,7 @@ template <class Arm> struct NearestRow {
       step /= root;
       double low, high, whole;
       bounds(j, inside, &low, &high);
-      const double half = Arm::kRevolute[j] ? kPi : Arm::kSize;
+      const double half = Arm::kPeriod[j] > 0.0 ? 0.5 * Arm::kPeriod[j] : Arm::kSize;
       const double centre = std::clamp(0.0, low + half, std::max(high - half, low + half));
       low = std::max(low, centre - half);
       high = std::min(high, centre + half);

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from math import isfinite, pi
+from math import isfinite
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -87,5 +87,7 @@ def seed_rows(arm: Arm, seed: ArrayLike, *shapes: tuple[int, ...], name: str = "
     if not np.isfinite(values).all():
         place = np.argwhere(~np.isfinite(values))[0].tolist()
         raise ValueError(f"{name}{place} is {values[tuple(place)]}, which is not finite")
-    far = np.array(arm.turning) & (np.abs(values) > _FARTHEST)
-    return np.where(far, np.fmod(values, 2.0 * pi), values) if far.any() else values
+    period = np.array(arm.period)
+    far = (np.abs(values) > _FARTHEST) & (period > 0.0)
+    turn = np.where(far, period, 1.0)
+    return np.where(far, np.fmod(values, turn), values) if far.any() else values

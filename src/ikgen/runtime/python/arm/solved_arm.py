@@ -66,8 +66,8 @@ class Arm:
     most. `branches(T, q0, held)`: the closed form's rows for a pose, values of joints that it leaves
     free, values of held joints, each with whether it is rough, and whether the pose left a joint free;
     None for an elimination; `branches_batch`: in arrays. `beside`
-    (n, 4, 4): motions of the tool to poses that are solved as well. `turning`: which joints are
-    revolute and not held; `moving`: indices of those not held.
+    (n, 4, 4): motions of the tool to poses that are solved as well. `period`: the
+    chain's, 0 of held joints; `moving`: indices of those not held.
     `together`: `refine_together` where the closed form is of another geometry than the file's, and all rows
     are rough; `solved`: the chain of that geometry then. `around`: `rows_around` where there is a closed
     form.
@@ -86,7 +86,7 @@ class Arm:
     branches: Branches | None
     branches_batch: BranchesBatch
     beside: Array
-    turning: tuple[bool, ...]
+    period: Row
     moving: tuple[int, ...]
     together: Together | None
     branch_kind: str

@@ -26,7 +26,7 @@ class Arm:
     free: tuple[int, ...]
     free_joints: tuple[str, ...]
     free_defaults: Row
-    turning: tuple[bool, ...]
+    period: Row
     moving: tuple[int, ...]
     branch_kind: str
     elbow_end: int

@@ -7,7 +7,7 @@ values and of what is under square roots.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import inf, pi
+from math import inf
 
 import numpy as np
 
@@ -108,13 +108,13 @@ def _limit_crossings(
     limit in it, more than 1 where one may do so more than once."""
     dead = np.zeros(linked.shape, dtype=bool)
     count = np.zeros(linked.shape)
-    for j, middle, half, turns in bounded_joints(arm) if limits else ():
-        a = offsets(q[..., j], middle, turns)
-        b = offsets(a + change[..., j], 0.0, turns)
+    for j, middle, half, period in bounded_joints(arm) if limits else ():
+        a = offsets(q[..., j], middle, period)
+        b = offsets(a + change[..., j], 0.0, period)
         off = bend[..., j] + _ROUND_OFF
         reach = half + arm.policy.limit_tolerance  # of rows that are taken as inside
         left, right = reach - np.abs(a), reach - np.abs(b)
-        opposite, far = a * b < 0.0, turns & (np.abs(a) + np.abs(b) > pi)
+        opposite, far = a * b < 0.0, (period > 0.0) & (np.abs(a) + np.abs(b) > 0.5 * period)
         dead |= (left < -off) & (right < -off) & (~opposite | far)
         sure = (left > off) & (right > off) & ~(opposite & far)
         once = (left * right <= 0.0) & (np.abs(left - right) > 4.0 * off)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import inf, pi
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -111,8 +111,9 @@ def _grid(
     axes, steps = [], []
     for j in arm.free:
         low, high = arm.lower[j], arm.upper[j]
-        if arm.chain.revolute[j] and not (limits and high - low < inf):
-            low, high = -pi, pi
+        half = 0.5 * arm.chain.period[j]
+        if half and not (limits and high - low < inf):
+            low, high = -half, half
         low, high = (min(max(x, low), high) for x in slide_range(arm, T, j))
         low = min(high, middle[j]) - 1.0 if low == -inf else low
         high = max(low, middle[j]) + 1.0 if high == inf else high

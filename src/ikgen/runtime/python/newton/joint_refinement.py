@@ -66,10 +66,9 @@ def refine_few(arm: Arm, q: Array, T: Array) -> Refined:
     before = np.full(len(q), policy.farthest_start)
     for steps in range(0, policy.lane_steps, 2):
         error, slope = _linearized(arm, q, T)
-        inverse = _left_inverse(slope)
+        inverse, pivot = _left_inverse(slope)
         change = inverse @ error
         size, worst = _largest(change[:, :, 0]), _largest(error[:, :, 0])
-        pivot = 1.0 / np.sqrt(_largest(np.add.reduce(inverse * inverse, axis=2)))
         near, far = begins(policy, size, worst, before, pivot, not steps)
         good, strained = good & near, strained | far
         q = moved_rows(arm, q, change[:, :, 0])
@@ -100,11 +99,15 @@ def _linearized(arm: Arm, q: Array, T: Array) -> tuple[Array, Array]:
     return error[:, :, None], slope
 
 
-def _left_inverse(V: Array) -> Array:
-    """Of V (k, m, n): (k, n, m)."""
+def _left_inverse(V: Array) -> tuple[Array, Array]:
+    """Of V (k, m, n): (k, n, m); and how far its columns are from the span of the others at least (k,)."""
     if V.shape[1] == V.shape[2]:
         try:
-            return np.asarray(np.linalg.inv(V))
+            inverse: Array = np.asarray(np.linalg.inv(V))
         except np.linalg.LinAlgError:
             pass
-    return np.asarray(normal_inverse(V) @ V.transpose(0, 2, 1))
+        else:
+            return inverse, 1.0 / np.sqrt(_largest(np.add.reduce(inverse * inverse, axis=2)))
+    normal = normal_inverse(V)  # of no rank, its product with V is 0 where it should be infinite
+    pivot = 1.0 / np.sqrt(_largest(np.einsum("kii->ki", normal)))
+    return np.asarray(normal @ V.transpose(0, 2, 1)), pivot

@@ -7,6 +7,7 @@ import numpy as np
 from ikgen.runtime.python.arm.chain_kinematics import cross, forward, joint_axes, tip_and_jacobian
 from ikgen.runtime.python.arm.held_parameters import held_of
 from ikgen.runtime.python.arm.solved_arm import Arm
+from ikgen.runtime.python.arrays.angles import within_periods
 from ikgen.runtime.python.arrays.array_types import Array
 
 __all__ = ["branch_names"]
@@ -67,9 +68,7 @@ def _branch_numbers(arm: Arm, q: Array) -> list[int]:
     poses = forward(arm.chain, q)
     with np.errstate(all="ignore"):
         rows, valid, *_ = arm.branches_batch(poses, q, held_of(arm, q))
-        gap = rows - q[:, None, :]
-        turned = np.abs((gap + np.pi) % (2.0 * np.pi) - np.pi)
-        gap = np.where(arm.chain.revolute, turned, np.abs(gap))
+        gap = np.abs(within_periods(rows - q[:, None, :], arm.chain.period))
         gap[:, :, list(arm.free)] = 0.0
         distance = np.where(valid, gap.max(axis=2), np.inf)
     distance[np.isnan(distance)] = np.inf

@@ -7,7 +7,7 @@ from math import inf
 import numpy as np
 
 from ikgen.runtime.python.arm.solved_arm import Arm
-from ikgen.runtime.python.arrays.angles import without_turns
+from ikgen.runtime.python.arrays.angles import within_periods
 from ikgen.runtime.python.arrays.array_types import Array, Flags, Index
 
 __all__ = ["differences", "linked_rows", "origins", "slide_scale"]
@@ -15,9 +15,7 @@ __all__ = ["differences", "linked_rows", "origins", "slide_scale"]
 
 def differences(arm: Arm, a: Array, b: Array) -> Array:
     """b - a (..., dof), of turning joints on the shortest way."""
-    gap = b - a
-    turning = np.array(arm.chain.revolute)
-    return np.where(turning, without_turns(gap), gap)
+    return within_periods(b - a, arm.chain.period)
 
 
 def slide_scale(values: Array) -> Array:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cache
-from math import ceil, floor, inf, pi, remainder
+from math import ceil, floor, inf, remainder
 from operator import lt
 
 import numpy as np
@@ -30,15 +30,13 @@ __all__ = [
 def is_new(arm: Arm, row: Row, kept: Sequence[Found]) -> bool:
     """Whether the row differs from all kept ones, whole turns aside; long slides count relative to their
     length."""
-    near, revolute = arm.policy.coincident, arm.chain.revolute[::-1]
+    near, period = arm.policy.coincident, arm.chain.period[::-1]
     for other, _ in kept:
-        for a, b, turns in zip(
-            reversed(row), reversed(other), revolute
-        ):  # the last ones differ most
+        for a, b, turn in zip(reversed(row), reversed(other), period):  # the last ones differ most
             gap = abs(a - b)
             if gap <= near:
                 continue
-            if abs((gap + pi) % WHOLE_TURN - pi) > near if turns else gap > near * abs(a):
+            if abs(remainder(gap, turn)) > near if turn else gap > near * abs(a):
                 break
         else:
             return False
@@ -47,7 +45,7 @@ def is_new(arm: Arm, row: Row, kept: Sequence[Found]) -> bool:
 
 def same_rows(arm: Arm, a: Array, b: Array) -> Flags:
     """Which rows a (k, dof) are the rows b (k, dof), by what `is_new` goes by."""
-    bound = np.where(arm.chain.revolute, 1.0, slide_scale(a))
+    bound = np.where(np.array(arm.chain.period) > 0.0, 1.0, slide_scale(a))
     gap = np.abs(differences(arm, a, b))
     return np.asarray((gap <= arm.policy.coincident * bound).all(axis=1))
 
@@ -55,18 +53,19 @@ def same_rows(arm: Arm, a: Array, b: Array) -> Flags:
 def apart(arm: Arm, q: Array) -> bool:
     """Whether all rows (k, dof) of revolute joints differ, whole turns aside; False also where slides have
     to tell. A number of each, whole turns of which are whole turns of the joints, tells most of them."""
-    if not all(arm.chain.revolute):
+    if not all(arm.chain.period):
         return False
-    weight = np.arange(1.0, q.shape[1] + 1.0)
+    period = np.array(arm.chain.period)
+    weight = np.arange(1.0, q.shape[1] + 1.0) * (WHOLE_TURN / period)
     turns = sorted((q @ weight % WHOLE_TURN).tolist())
-    enough = arm.policy.coincident * float(q.shape[1] * (q.shape[1] + 1))
+    enough = 2.0 * arm.policy.coincident * float(weight.sum())
     if all(
         b - a > enough for a, b in zip(turns, [*turns[1:], *(x + WHOLE_TURN for x in turns[:1])])
     ):
         return True
     later, earlier = pairs(len(q))
     gap = q[later] - q[earlier]
-    gap -= WHOLE_TURN * np.rint(gap / WHOLE_TURN)
+    gap -= period * np.rint(gap / period)
     most = np.maximum.reduce(np.abs(gap), axis=1, initial=0.0)
     return bool((most > arm.policy.coincident).all())
 
@@ -79,8 +78,8 @@ def distinct(arm: Arm, q: Array, valid: Flags) -> Flags:
     for j in reversed(range(q.shape[2])):  # the last joints differ between most rows
         value = q[:, :, j].T
         gap = np.abs(value[later] - value[earlier])
-        if arm.chain.revolute[j]:
-            same &= (gap <= near) | (np.abs(gap - WHOLE_TURN) <= near)
+        if arm.chain.period[j]:
+            same &= (gap <= near) | (np.abs(gap - arm.chain.period[j]) <= near)
         else:
             same &= gap <= near * slide_scale(value[later])
         if not same.any():
@@ -101,7 +100,7 @@ def rows_at_limits(
 ) -> tuple[list[Found], list[tuple[Found, Row]]]:
     """`place_rows`, and of the dropped rows those hardly outside: as they were, and on the limits."""
     inside, close = [], []
-    least, most = _one_turn(arm.lower, arm.upper, arm.turning, limits)
+    least, most = _one_turn(arm.lower, arm.upper, arm.period, limits)
     for row, flag in rows:
         if near is None and all(map(lt, least, row)) and all(map(lt, row, most)):
             inside.append((row, flag))
@@ -115,37 +114,37 @@ def rows_at_limits(
 
 
 @cache
-def _one_turn(low: Row, high: Row, turning: tuple[bool, ...], limits: bool) -> tuple[Row, Row]:
+def _one_turn(low: Row, high: Row, period: Row, limits: bool) -> tuple[Row, Row]:
     """Between which values of the joints rows are on their turns, and inside the limits."""
     if not limits:
         low, high = (-inf,) * len(low), (inf,) * len(low)
-    least = tuple(max(x, -pi) if turns else x for x, turns in zip(low, turning))
-    return least, tuple(min(x, pi) if turns else x for x, turns in zip(high, turning))
+    least = tuple(max(x, -0.5 * turn) if turn else x for x, turn in zip(low, period))
+    return least, tuple(min(x, 0.5 * turn) if turn else x for x, turn in zip(high, period))
 
 
 def _place(arm: Arm, row: Row, near: Row | None, limits: bool) -> tuple[Row | None, bool]:
     """The row on its turns, None where it is far outside; and whether it had to be moved to limits by more
     than round-off."""
     out, beyond = [], False
-    for j, (q, turning, low, high) in enumerate(zip(row, arm.turning, arm.lower, arm.upper)):
+    for j, (q, turn, low, high) in enumerate(zip(row, arm.period, arm.lower, arm.upper)):
         shift = 0.0
-        if turning:
-            if q <= -pi:
-                q += WHOLE_TURN
-            elif q > pi:
-                q -= WHOLE_TURN
+        if turn:
+            if q <= -0.5 * turn:
+                q += turn
+            elif q > 0.5 * turn:
+                q -= turn
             if near is not None:
-                shift = WHOLE_TURN * round((near[j] - q) / WHOLE_TURN)
+                shift = turn * round((near[j] - q) / turn)
         if limits and not low <= q + shift <= high:
             least, most = low - arm.policy.limit_tolerance, high + arm.policy.limit_tolerance
-            if turning and q + shift < least:
-                shift = WHOLE_TURN * ceil((least - q) / WHOLE_TURN)
-            if turning and q + shift > most:
-                shift = WHOLE_TURN * floor((most - q) / WHOLE_TURN)
+            if turn and q + shift < least:
+                shift = turn * ceil((least - q) / turn)
+            if turn and q + shift > most:
+                shift = turn * floor((most - q) / turn)
             if not least <= q + shift <= most:
                 to_low, to_high = low - q, high - q
-                if turning:
-                    to_low, to_high = remainder(to_low, WHOLE_TURN), remainder(to_high, WHOLE_TURN)
+                if turn:
+                    to_low, to_high = remainder(to_low, turn), remainder(to_high, turn)
                 if min(abs(to_low), abs(to_high)) > arm.policy.limit_reach:
                     return None, True
                 q, shift, beyond = low if abs(to_low) < abs(to_high) else high, 0.0, True
@@ -185,27 +184,27 @@ def place_rows_batch(
     """Rows (N, M, dof) on the right turns, in place, which of them lie inside the limits, and which may be
     hardly outside."""
     inside, close, reach = (*np.ones((2, *q.shape[:2]), dtype=bool), arm.policy.limit_reach)
-    for j, (turning, low, high) in enumerate(zip(arm.turning, arm.lower, arm.upper)):
+    for j, (turn, low, high) in enumerate(zip(arm.period, arm.lower, arm.upper)):
         value = q[..., j]
         least, most = low - arm.policy.limit_tolerance, high + arm.policy.limit_tolerance
-        if turning:
-            value = np.where(value <= -pi, value + WHOLE_TURN, value)
-            value = np.where(value > pi, value - WHOLE_TURN, value)
+        if turn:
+            value = np.where(value <= -0.5 * turn, value + turn, value)
+            value = np.where(value > 0.5 * turn, value - turn, value)
             turns: Array = np.zeros(1)
             if near is not None:
-                turns = np.round((near[:, None, j] - value) / WHOLE_TURN)
+                turns = np.round((near[:, None, j] - value) / turn)
             if limits and least > -inf:
-                turns = np.maximum(turns, np.ceil((least - value) / WHOLE_TURN))
+                turns = np.maximum(turns, np.ceil((least - value) / turn))
             if limits and most < inf:
-                turns = np.minimum(turns, np.floor((most - value) / WHOLE_TURN))
-            value = value + WHOLE_TURN * turns
+                turns = np.minimum(turns, np.floor((most - value) / turn))
+            value = value + turn * turns
         if limits:
             fits = (value >= least) & (value <= most)
             inside &= fits
             if close.any():
                 beyond = (value > low - reach) & (value < high + reach)
-                if turning:
-                    beyond |= value + WHOLE_TURN < high + reach
+                if turn:
+                    beyond |= value + turn < high + reach
                 close &= beyond
             value = np.minimum(np.maximum(value, low), high)
         q[..., j] = value

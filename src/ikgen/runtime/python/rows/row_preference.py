@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import inf, isfinite, pi
+from math import inf, isfinite
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -51,8 +51,9 @@ def preference_costs(
     name, middle, weights = preference
     q = q.copy()
     for j in arm.free:
-        if arm.chain.revolute[j] and not isfinite(arm.upper[j] - arm.lower[j]):
-            q[..., j] += 2.0 * pi * np.round((middle[j] - q[..., j]) / (2.0 * pi))
+        period = arm.chain.period[j]
+        if period and not isfinite(arm.upper[j] - arm.lower[j]):
+            q[..., j] += period * np.round((middle[j] - q[..., j]) / period)
     q, inside, _ = place_rows_batch(arm, q, np.tile(middle, (len(q), 1)), limits)
     if name != "dexterous":
         return q, np.asarray((q - np.array(middle)) ** 2 @ np.array(weights)), inside

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ikgen.runtime.python.arm.solved_arm import Arm
-from ikgen.runtime.python.arrays.angles import without_turns
+from ikgen.runtime.python.arrays.angles import within_periods
 from ikgen.runtime.python.arrays.array_tuples import joined, some_of
 from ikgen.runtime.python.arrays.array_types import Array, Flags, Index
 from ikgen.runtime.python.rows.row_links import differences
@@ -191,4 +191,4 @@ def _kept(arm: Arm, parts: Parts) -> tuple[Index, Array]:
     order = np.lexsort((parts.place, parts.owner))
     order = order[np.abs(left[order]) < arm.policy.arrived]
     order = order[places(parts.owner[order]) < _ROOM]
-    return parts.owner[order], np.where(arm.turning, without_turns(q), q)[order]
+    return parts.owner[order], within_periods(q, arm.period)[order]

@@ -7,7 +7,7 @@ Marquardt 1963), from many starts; those that come nearest in a few steps are fo
 
 from __future__ import annotations
 
-from math import asin, inf, pi, sqrt
+from math import asin, inf, sqrt
 
 import numpy as np
 
@@ -141,7 +141,8 @@ def _even_starts(arm: Arm, low: Array, high: Array, count: int) -> Array:
         root = (1.0 + root) ** (1.0 / (dof + 1))
     steps = (1.0 / root) ** np.arange(1, dof + 1)
     part = (0.5 + np.arange(1, count + 1)[:, None] * steps) % 1.0
-    half = np.where(arm.chain.revolute, pi, arm.task.size)
+    period = np.array(arm.chain.period)
+    half = np.where(period > 0.0, 0.5 * period, arm.task.size)
     centre = np.clip(0.0, low + half, np.maximum(high - half, low + half))
     least, most = np.maximum(low, centre - half), np.minimum(high, centre + half)
     return np.asarray(least + part * (most - least))
