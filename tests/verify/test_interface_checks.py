@@ -199,6 +199,20 @@ def test_a_batch_has_the_rows_and_the_status_of_single_answers() -> None:
     assert batch(lambda r: None) == (True, 0, "code has none")
 
 
+@pytest.mark.parametrize(("by", "same"), [(3e-8, True), (1e-5, False)])
+def test_a_batch_may_end_elsewhere_by_what_steps_leave(by: float, same: bool) -> None:
+    """Beside a singularity an error of 1e-13 moves a row by more than 1e-9 rad."""
+    under_test, code = arm(), Code()
+    q = Q.copy()
+    q[1, 4] = 1e-5  # the wrist is all but straight
+    code.many, code.batch = rows(q), rows(q)
+    null = np.linalg.svd(under_test.scaled_jacobian(q[1:2])[1][0])[2][-1]
+    code.batch.q[1, 0] += by * null
+    assert code.batch.q[1, 0, 3] != q[1, 3]
+    found = check_batch(under_test, code, sample(), code.many)  # type: ignore[arg-type]
+    assert found.passed is same
+
+
 @pytest.mark.parametrize("count", [1, 3, 5])
 def test_a_batch_with_another_number_of_statuses_is_no_answer(count: int) -> None:
     with pytest.raises(ValueError, match="zip"):

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ikgen.verify.arm import ArmUnderTest
-from ikgen.verify.completeness import POSE_NOISE, sensitivity
+from ikgen.verify.completeness import sensitivity
 from ikgen.verify.reach import invalid_poses
 from ikgen.verify.runners.runner import Rows, Runner
 from ikgen.verify.sampling import SampleSet
@@ -24,6 +24,7 @@ __all__ = [
 Array = NDArray[np.float64]
 
 SAME_TOLERANCE = 1e-9  # m, rad: two functions that compute the same
+SETTLED = 1e-12  # rad, lengths of the arm: what Newton steps that end leave of a row's error, and more
 
 
 def _other_bounds(arm: ArmUnderTest, ours: Array, files: Array) -> str:
@@ -101,7 +102,7 @@ def check_jacobian(arm: ArmUnderTest, runner: Runner, sample: SampleSet) -> Chec
 
 def check_batch(arm: ArmUnderTest, runner: Runner, sample: SampleSet, single: Rows) -> CheckResult:
     """`solve_batch` returns the same rows and status as `solve`, free joints at their defaults, `single`.
-    Where the arm is all but singular, the two may differ by what rounding moves a row."""
+    Where the arm is all but singular, the two may differ by what the last steps of either leave."""
     name, batch = "solve_batch", runner.solve_batch(sample.poses)
     if batch is None:
         return result(name, 0, 0, detail=f"{runner.label} has none")
@@ -122,7 +123,7 @@ def _others(arm: ArmUnderTest, rows: Rows, reference: Rows) -> NDArray[np.bool_]
     """The poses (N,) at which some row is none of the reference's."""
     off = np.where(rows.mask, nearest(arm, rows.q, reference.q), 0.0)
     pose, k = np.nonzero(off > SAME_TOLERANCE)
-    moved = sensitivity(arm, rows.q[pose, k]).moved(POSE_NOISE)
+    moved = sensitivity(arm, rows.q[pose, k]).moved(SETTLED)
     wrong = np.zeros(len(off), dtype=bool)
     wrong[pose[off[pose, k] > SAME_TOLERANCE + moved]] = True
     return wrong
