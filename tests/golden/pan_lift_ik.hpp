@@ -1064,6 +1064,16 @@ template <class Arm> struct SingularValue {
     return !above(at.slope, bound);
   }
 
+  static bool between(const double* a, const double* b) noexcept {
+    if (Arm::kFree > 0) return false;
+    const PoseError<Arm> here(a, HeldAim<Arm>::own(a)), there(b, HeldAim<Arm>::own(b));
+    double M[Arm::kDof][Arm::kDof] = {};
+    for (int e = 0; e < kEquations; ++e)
+      for (int i = 0; i < Arm::kDof; ++i)
+        for (int j = 0; j < Arm::kDof; ++j) M[i][j] += here.slope[e][i] * there.slope[e][j];
+    return !keeps_orientation(M);
+  }
+
  private:
   template <class X> static auto above(const X (&slope)[kEquations][Arm::kDof], double bound) noexcept {
     X A[kRank][kRank];
@@ -3089,7 +3099,7 @@ template <class A, class Solver> struct PathStep {
   using Status = typename A::Status;
 
   double q[kDof];
-  bool limits, crossed = false;
+  bool limits, crossed = false, at_singularity = false;
   int left = kMost;
 
   Status go_on(const Eigen::Isometry3d& before, const Eigen::Isometry3d& pose) noexcept {
@@ -3105,6 +3115,7 @@ template <class A, class Solver> struct PathStep {
     const Status why = next_row(pose, expected, row, singular);
     if (why == Status::Ok && farthest(row, here) < kFarthest && arrive(row) == Status::Ok) {
       crossed = true;
+      at_singularity = singular;
       return Status::Ok;
     }
     std::copy_n(there, kDof, q);
@@ -3121,9 +3132,11 @@ template <class A, class Solver> struct PathStep {
     Status status = next_row(pose, expected, row, singular);
     if (status == Status::Ok) {
       const double gap = farthest(row, expected), moved = farthest(row, q);
-      const bool follows = moved < kFarthest && gap < kLeastOff + kOff * moved;
+      const bool alike = moved < kFarthest && gap < kLeastOff + kOff * moved;
+      const bool follows = alike && (singular || at_singularity || !SingularValue<A>::between(q, row));
       if (follows || (depth == kDeepest && moved < kJump)) {
         crossed = crossed || singular || !follows;
+        at_singularity = singular;
         return arrive(row);
       }
       status = Status::Singular;

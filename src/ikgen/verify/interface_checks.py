@@ -24,7 +24,9 @@ __all__ = [
 Array = NDArray[np.float64]
 
 SAME_TOLERANCE = 1e-9  # m, rad: two functions that compute the same
-SETTLED = 1e-12  # rad, lengths of the arm: what Newton steps that end leave of a row's error, and more
+SETTLED = (
+    1e-12  # rad, lengths of the arm: what Newton steps that end leave of a row's error, and more
+)
 
 
 def _other_bounds(arm: ArmUnderTest, ours: Array, files: Array) -> str:

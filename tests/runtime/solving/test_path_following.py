@@ -106,7 +106,8 @@ def test_steps_end_where_they_do_not_halve_the_error_or_arrive() -> None:
 
 def test_long_ways_are_gone_in_steps_of_less_than_a_third_of_a_radian() -> None:
     """Of a joint whose value is the pose's first coordinate."""
-    arm: Any = SimpleNamespace(lower=(0.0,), policy=SimpleNamespace(limit_tolerance=1e-9))
+    policy = SimpleNamespace(limit_tolerance=1e-9)
+    arm: Any = SimpleNamespace(lower=(0.0,), policy=policy, free_joints=("q",))
     for way in (0.2, 0.5, 2.0):
         walk, at = _Walk(arm, False), [0.0]
 

@@ -52,6 +52,18 @@ template <class Arm> struct SingularValue {
     }
   }
 
+  // Whether there is a singularity between two configurations: where the determinant changes its sign, of arms that hold
+  // no joint. To be asked of none at one.
+  static bool between(const double* a, const double* b) noexcept {
+    if (Arm::kFree > 0) return false;
+    const PoseError<Arm> here(a, HeldAim<Arm>::own(a)), there(b, HeldAim<Arm>::own(b));
+    double M[Arm::kDof][Arm::kDof] = {};
+    for (int e = 0; e < kEquations; ++e)
+      for (int i = 0; i < Arm::kDof; ++i)
+        for (int j = 0; j < Arm::kDof; ++j) M[i][j] += here.slope[e][i] * there.slope[e][j];
+    return !keeps_orientation(M);
+  }
+
   // Which rows in lanes are real and have no such value. Not for arms that hold the arm angle.
   template <class Rows> static void regular(const Rows& rows, double bound, bool (&out)[Rows::kLanes]) noexcept {
     constexpr int N = Rows::kLanes < kNative ? Rows::kLanes : kNative;

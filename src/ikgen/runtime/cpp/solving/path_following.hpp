@@ -21,7 +21,7 @@ template <class A, class Solver> struct PathStep {
   using Status = typename A::Status;
 
   double q[kDof];
-  bool limits, crossed = false;
+  bool limits, crossed = false, at_singularity = false;
   int left = kMost;
 
   // From a pose to the next; where halved steps lead far away or nowhere, as beside a singularity, to a row next to the
@@ -39,6 +39,7 @@ template <class A, class Solver> struct PathStep {
     const Status why = next_row(pose, expected, row, singular);
     if (why == Status::Ok && farthest(row, here) < kFarthest && arrive(row) == Status::Ok) {
       crossed = true;
+      at_singularity = singular;
       return Status::Ok;
     }
     std::copy_n(there, kDof, q);
@@ -56,9 +57,11 @@ template <class A, class Solver> struct PathStep {
     Status status = next_row(pose, expected, row, singular);
     if (status == Status::Ok) {
       const double gap = farthest(row, expected), moved = farthest(row, q);
-      const bool follows = moved < kFarthest && gap < kLeastOff + kOff * moved;
+      const bool alike = moved < kFarthest && gap < kLeastOff + kOff * moved;
+      const bool follows = alike && (singular || at_singularity || !SingularValue<A>::between(q, row));
       if (follows || (depth == kDeepest && moved < kJump)) {
         crossed = crossed || singular || !follows;
+        at_singularity = singular;
         return arrive(row);
       }
       status = Status::Singular;

@@ -80,12 +80,13 @@ def follow_poses(
 
 
 class _Walk:
-    """`q`: where the arm is; `crossed`: whether it came across a singularity since that was last unset."""
+    """`q`: where the arm is, `singular`: at a singularity; `crossed`: whether it came across one since that
+    was last unset."""
 
     def __init__(self, arm: Arm, limits: bool) -> None:
         self.arm, self.limits = arm, limits
         self.q: Array = np.zeros(len(arm.lower))
-        self.crossed = False
+        self.crossed = self.singular = False
         self.left = _MOST
 
     def begin(
@@ -111,11 +112,12 @@ class _Walk:
         if status is Status.OK and np.abs(self.q - here).max() < _AWAY:
             return status
         there, self.q = self.q, here
-        rows, _, why, _ = self._rows(pose)
+        rows, flags, why, _ = self._rows(pose)
         moved = np.abs(rows - here).max(axis=1)
         near = len(rows) and moved.min() < _FARTHEST
-        if near and self._arrive(rows[int(moved.argmin())]) is Status.OK:
-            self.crossed = True
+        k = int(moved.argmin()) if near else 0
+        if near and self._arrive(rows[k]) is Status.OK:
+            self.crossed, self.singular = True, bool(flags[k])
             return Status.OK
         self.q = there
         return why if status is Status.SINGULAR and not len(rows) else status
@@ -129,8 +131,10 @@ class _Walk:
             k = int(gap.argmin())
             moved = float(np.abs(rows[k] - self.q).max())
             follows = moved < _FARTHEST and gap[k] < _LEAST_OFF + _OFF * moved
+            follows = follows and (bool(flags[k]) or not self._across(rows[k]))
             if follows or (depth == _DEEPEST and moved < _JUMP):
-                self.crossed = self.crossed or bool(flags[k]) or not follows
+                self.singular = bool(flags[k])
+                self.crossed = self.crossed or self.singular or not follows
                 return self._arrive(rows[k])
             status = Status.SINGULAR
         if depth == _DEEPEST or self.left < 0 or (depth >= _SHALLOW and not len(rows)):
@@ -138,6 +142,15 @@ class _Walk:
         middle = _between(before, pose)
         first = self.step(before, middle, depth + 1)
         return first if first is not Status.OK else self.step(middle, pose, depth + 1)
+
+    def _across(self, row: Array) -> bool:
+        """Whether a singularity lies between here and a row, as it does where the determinant changes its
+        sign: of arms that hold no joint. Of none at one."""
+        arm = self.arm
+        if arm.free_joints or self.singular:
+            return False
+        a, b = arm.task.rows(*tip_and_jacobian(arm.chain, np.array([self.q, row])))
+        return bool(np.linalg.det(a.T @ b) < 0.0)
 
     def _arrive(self, row: Array) -> Status:
         """To a row, if it is inside the limits on the turn that it came to."""
