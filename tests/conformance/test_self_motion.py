@@ -64,6 +64,21 @@ def test_a_branch_goes_on_all_over_its_interval_and_no_farther(arm: ModuleType) 
     assert checked > 10
 
 
+def test_curves_that_cross_keep_their_names(tmp_path: Path) -> None:
+    """With the wrist straight its axis stays where it is while the forearm turns: rows of two branches meet
+    where they go on as each other's."""
+    arm = imported("held_forearm", tmp_path)
+    rng, low, high = np.random.default_rng(6), *held_limits(arm)
+    held = np.linspace(low, high, 60)[1:-1]
+    for _ in range(3):
+        q = rng.uniform(arm.LOWER, arm.UPPER)
+        q[5] = 0.0
+        pose, found = arm.forward(q), arm.self_motion(arm.forward(q))
+        for value in held:
+            names = {f"branch {one.branch}" for one in found if one.low <= value <= one.high}
+            assert names == set(arm.solve(pose, free=value).branch)
+
+
 def test_no_limits_give_no_less(arm: ModuleType) -> None:
     for pose in poses(arm, 4, 5):
         inside = sum(one.high - one.low for one in arm.self_motion(pose))

@@ -29,6 +29,7 @@ HELD: dict[str, tuple[str, ...]] = {
     "shoulder_elbow_wrist": ("wrist_roll",),
     "franka_fr3": ("fr3_joint7",),
     "torso": ("torso", "wrist_roll"),
+    "held_forearm": ("wrist_yaw",),
     "arm_angle": ("arm-angle",),
     "offset_elbow": ("arm-angle",),
     "rounded_arm_angle": ("arm-angle",),

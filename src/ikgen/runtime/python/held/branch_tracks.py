@@ -45,7 +45,7 @@ def tracked(joint: HeldJoint, T: Array, low: float, high: float, limits: bool) -
     cells = _CELLS if joint.guarded else _UNGUARDED_CELLS
     rows = rows_at(joint, T, np.linspace(low, high, cells + 1))
     while True:
-        following = linked_rows(arm, rows.q, rows.real)
+        following = linked_rows(arm, rows.q, rows.real, joint.guarded)
         doubtful = _doubtful(joint, rows, following, limits)
         held = rows.held
         middle = 0.5 * (held[1:] + held[:-1])[doubtful]

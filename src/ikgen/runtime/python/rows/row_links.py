@@ -12,6 +12,8 @@ from ikgen.runtime.python.arrays.array_types import Array, Flags, Index
 
 __all__ = ["differences", "linked_rows", "origins", "slide_scale"]
 
+_NEAR = 0.3  # rad or m that a row of a branch may be from its own before
+
 
 def differences(arm: Arm, a: Array, b: Array) -> Array:
     """b - a (..., dof), of turning joints on the shortest way."""
@@ -23,9 +25,10 @@ def slide_scale(values: Array) -> Array:
     return np.asarray(np.maximum(np.abs(values), 1.0))
 
 
-def linked_rows(arm: Arm, q: Array, real: Flags) -> Index:
+def linked_rows(arm: Arm, q: Array, real: Flags, guarded: bool = False) -> Index:
     """For rows (n, m, dof) of which some are real (n, m): the index (n - 1, m) of the row at the next value
-    that each is nearest to and that is nearest to it; -1 where there is none."""
+    that each is nearest to and that is nearest to it; -1 where there is none. `guarded`: rows stay in
+    their columns, where those come and go together and no row is far from its own before."""
     order = np.argsort(~real, axis=1, kind="stable")[:, : real.sum(axis=1).max(initial=1)]
     rows = np.take_along_axis(q, order[:, :, None], axis=1)
     some = np.take_along_axis(real, order, axis=1)
@@ -37,7 +40,15 @@ def linked_rows(arm: Arm, q: Array, real: Flags) -> Index:
     following = np.where(mutual & near, np.take_along_axis(order[1:], there, axis=1), -1)
     out = np.full((len(order) - 1, real.shape[1]), -1)
     np.put_along_axis(out, order[:-1], following, axis=1)
-    return out
+    return _in_columns(arm, q, real, out) if guarded else out
+
+
+def _in_columns(arm: Arm, q: Array, real: Flags, links: Index) -> Index:
+    """Links within columns where these leave no doubt, as where two curves of rows cross; the others."""
+    stays = real[:-1] & real[1:]
+    gap = np.abs(differences(arm, q[:-1], q[1:])).max(axis=2)
+    plain = np.where(stays, gap < _NEAR, real[:-1] == real[1:]).all(axis=1, keepdims=True)
+    return np.where(plain, np.where(stays, np.arange(real.shape[1]), -1), links)
 
 
 def origins(following: Index) -> Index:
