@@ -35,6 +35,22 @@ def test_before_any_derivation_the_rows_are_exact() -> None:
     assert max(found.dh.deviation) > 1e-5
 
 
+@pytest.mark.parametrize(
+    ("task", "axis", "asked"),
+    [
+        ("position", "x", ()),
+        ("position-pitch", "x", ("--tool-axis", "x")),
+        ("direction:y", "x", ()),
+    ],
+)
+def test_an_attempt_asks_for_an_axis_where_its_task_reads_one(
+    task: str, axis: str, asked: tuple[str, ...]
+) -> None:
+    request = Request(FIXTURES / "ur5e.urdf", task="position-yaw", tool_axis=axis)
+    options = Attempt(task, (), True, 4, (), ()).asked(request).options
+    assert options == ["--task", task, *asked]
+
+
 def test_steps_of_more_than_two_branches_come_later_whatever_their_leaf_is_called() -> None:
     step = ("theta_1 (four points)",)
     several = Attempt("pose", (), True, 4, step, (), two_branch=False)

@@ -12,6 +12,7 @@ from tests.support.solving import FIXTURES
 from tests.support.tables import table
 
 from ikgen.errors import IkgenError
+from ikgen.generation.announcements import announcements
 from ikgen.generation.closed_forms import rule_tries
 from ikgen.generation.derive import derive
 from ikgen.generation.inspection import inspect_robot
@@ -111,3 +112,26 @@ def test_more_joints_than_can_be_solved_are_refused_with_a_way_out(
     with pytest.raises(IkgenError, match=f"{joints} joints move") as caught:
         inspect_robot(parallel(joints, tmp_path))
     assert "--lock" in caught.value.hint
+
+
+SKEW: tuple[Joint, ...] = (
+    ("swing", "revolute", "0.3 0 1", "0 0 0.2", (-2.9, 2.9)),
+    ("lift", "revolute", "0 1 0.2", "0.1 0 0.1", (-2.0, 2.0)),
+    ("twist", "revolute", "1 0.4 0", "0 0.05 0.3", (-2.9, 2.9)),
+    ("bend", "revolute", "0.1 1 0", "0.2 0 0.1", (-2.0, 2.0)),
+)
+"""Four joints whose axes are in no special way to each other."""
+
+
+def test_an_arm_that_fits_no_task_gets_the_position_with_a_joint_held(tmp_path: Path) -> None:
+    path = tmp_path / "skew.urdf"
+    path.write_text(serial_urdf("skew", list(SKEW)))
+    found = derive(Request(path))
+    assert found.task.name == "position" and len(found.module.free) == 1 and found.chosen
+    assert found.held is not None and not any("OVER" in text for text in announcements(found))
+    whole = derive(Request(path, task="pose"))
+    assert whole.module.free == () and any("OVER" in text for text in announcements(whole))
+    held = derive(Request(path, free={"twist": None}))
+    assert held.module.held == ("twist",) and held.task.name == "position"
+    first = inspect_robot(Request(path)).attempts[0]
+    assert first.default and first.task == "position" and first.free == found.reading.dh.free

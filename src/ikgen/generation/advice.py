@@ -66,9 +66,14 @@ class Attempt:
 
     def asked(self, request: Request) -> Request:
         """The request that this attempt is."""
+        from ikgen.tasks import find_task
+
         task = None if self.implied and request.task is None else self.task
+        axis = request.tool_axis
+        if task is not None and (":" in task or not find_task(task).axis):
+            axis = None
         free = {name: request.free.get(name) for name in self.free}
-        return replace(request, task=task, free=free)
+        return replace(request, task=task, tool_axis=axis, free=free)
 
 
 def attempts(
@@ -93,7 +98,7 @@ def attempts(
         return [taken]
     default = taken.closed and not needs_held(reading.dh, find_task(taken.task))
     found = [replace(taken, default=default), *_other_tasks(reading, taken.task, demand)]
-    return sorted(found, key=lambda a: a.rank)
+    return sorted(found, key=lambda a: (not a.default, a.rank))
 
 
 def _other_tasks(reading: Reading, taken: str, demand: Demand) -> list[Attempt]:

@@ -13,8 +13,6 @@ if TYPE_CHECKING:
 
 __all__ = ["announcements"]
 
-_POSITION = 3  # freedoms
-
 
 def announcements(derivation: Derivation) -> tuple[str, ...]:
     """What was odd in the file, that the task is not the first that fits, that it asks more than the
@@ -68,7 +66,6 @@ def _over_constrained(derivation: Derivation) -> str:
         smaller = "No task that so many joints fit has a verified closed form here; "
         if not other:
             smaller = "No smaller task asks for just what the joints can move; "
-        smaller += "--task position may, with a joint held; " if moving > _POSITION else ""
     elif needs_held(dh, task):
         these = " ".join(f"--free {name}" for name in dh.free)
         smaller += f"without {these} the arm can do it; "

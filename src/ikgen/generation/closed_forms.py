@@ -63,7 +63,29 @@ def closed_form(reading: Reading, demand: Demand) -> ClosedForm:
     choices = tuple(choice for choice in choices if choice.held not in demand.refused)
     if choices:
         return _with_joints_held(reading, choices, demand)
-    return _settled(_by_rules_somewhere(reading, demand), reading.dh, demand)
+    found = _settled(_by_rules_somewhere(reading, demand), reading.dh, demand)
+    return _position_instead(reading, found, demand) or found
+
+
+def _position_instead(reading: Reading, found: ClosedForm, demand: Demand) -> ClosedForm | None:
+    """The position alone, with joints held, where nobody asked for a task and the arm can do none that
+    takes all its joints: it can be anywhere, and take hardly any whole pose. None where that is no way
+    out."""
+    from ikgen.tasks import find_task
+    from ikgen.tasks.fitting import freedoms_moved, over_constrained
+
+    task, dh = find_task("position"), reading.dh
+    free_to_choose = demand.task is None and demand.axis is None and not dh.free
+    if (
+        not free_to_choose
+        or task.name in demand.passed_over
+        or not over_constrained(dh, found.task)
+    ):
+        return None
+    if not task.freedoms == freedoms_moved(dh, task) < dh.dof:
+        return None
+    form = closed_form(reading, replace(demand, task=task.name))
+    return form if form.closed else None
 
 
 def _settled(form: ClosedForm, read: DHChain, demand: Demand) -> ClosedForm:
