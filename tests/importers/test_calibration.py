@@ -152,6 +152,7 @@ def test_the_page_on_fleets_has_a_row_for_each_of_the_arm() -> None:
         (OWN.replace("0.16236", "high"), "shoulder.z .* not a finite number"),
         (OWN.replace("0.16236", "9" * 400), "shoulder.z .* not a finite number"),
         ("kinematics: {", "not YAML"),
+        (OWN.replace("forearm:", "shoulder:"), ":5: the calibration has 'shoulder' twice"),
     ],
 )
 def test_what_is_no_calibration_is_refused(text: str, said: str, tmp_path: Path) -> None:
@@ -168,6 +169,7 @@ def test_what_is_no_calibration_is_refused(text: str, said: str, tmp_path: Path)
         ("[[joints]]\na = 'x'\n[[joints]]\n", "not a finite number"),
         (f"[[joints]]\na = {10**400}\n[[joints]]\n", "row 1, a .* not a finite number"),
         ("[[joints]\n", "not TOML"),
+        ("\ufeff[[joints]]\nb = 1\n[[joints]]\n", "unknown entry 'b'"),
     ],
 )
 def test_what_are_no_offsets_is_refused(text: str, said: str, tmp_path: Path) -> None:

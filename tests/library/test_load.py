@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import copy
 import inspect
+import pickle
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -45,6 +47,15 @@ def test_an_arm_solves_what_its_forward_kinematics_gives(ur5e: ikgen.Arm) -> Non
     assert count.tolist() == [8, 0] and status.tolist() == ["OK", "INVALID"]
     assert np.allclose(rows[0, :8], found.q)
     assert ur5e.jacobian(q).shape == (6, 6)
+
+
+def test_an_arm_can_be_copied_and_sent_to_other_processes(ur5e: ikgen.Arm) -> None:
+    q = np.array([0.2, -0.9, 1.1, 0.3, 0.6, -0.4])
+    pose = ur5e.forward(q)
+    for other in (pickle.loads(pickle.dumps(ur5e)), copy.deepcopy(ur5e)):
+        assert other.source == ur5e.source and other.module is not ur5e.module
+        assert (other.solve(pose).q == ur5e.solve(pose).q).all()
+        assert other.derivation.order == ur5e.derivation.order
 
 
 def test_an_arm_tells_what_it_is(ur5e: ikgen.Arm) -> None:

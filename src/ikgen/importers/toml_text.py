@@ -14,10 +14,10 @@ __all__ = ["parse_toml"]
 
 
 def parse_toml(text: str) -> dict[str, Any]:
-    """The tables of a text. Raises `ValueError` for what is no TOML, numbers of thousands of digits, and
-    what is nested too deep."""
+    """The tables of a text, behind a byte order mark or not. Raises `ValueError` for what is no TOML,
+    numbers of thousands of digits, and what is nested too deep."""
     try:
-        tables: dict[str, Any] = tomllib.loads(text)
+        tables: dict[str, Any] = tomllib.loads(text.removeprefix("\ufeff"))
     except RecursionError as error:
         raise ValueError(str(error)) from None
     return tables

@@ -51,6 +51,11 @@ class Arm:
         self._request, self._outputs, self._entry = request, outputs, entry
         self._derived = derivation
 
+    def __getstate__(self) -> dict[str, Any]:
+        """What pickles and copies carry: the module is made from its text, a derivation when asked for."""
+        names = ("_request", "_outputs", "_entry")
+        return {"_derived": None, **{name: self.__dict__[name] for name in names}}
+
     @property
     def name(self) -> str:
         """The arm's name, which begins the names of its files."""
