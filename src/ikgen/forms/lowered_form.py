@@ -40,6 +40,10 @@ _FURTHER = 3.0
 """Times as far as at random configurations, to first order, that what unknowns are off may move what
 follows from them."""
 
+_WORST = 10.0
+"""Times as far as at random configurations that what the pose is off may move what is under a square root,
+which counts where links are short beside the pose's lengths."""
+
 _OUTSIDE = 0.5
 """Of its natural size, how far outside its domain what is under a square root may be at most: the branches
 of one that is farther outside are near no solution."""
@@ -70,7 +74,8 @@ class Tolerances:
     what follows from a divisor by as much over it: `margin` gives what the unknowns that a value follows
     from leave of the file's digits, as a square relative to natural sizes (see `FileDigits`), and `moved`
     bounds how far a value goes for each radian, or metre, that the unknowns before it are off. `lost`
-    bounds by how much round-off moves one; where `double` holds, an unknown solved so far is nearly a
+    bounds by how much round-off moves one, `shifted` how far one goes for each radian, or metre, that the
+    entries of the pose are off; where `double` holds, an unknown solved so far is nearly a
     double root.
     """
 
@@ -87,11 +92,15 @@ class Tolerances:
     margin: Margin = no_margin
     lost: Lost = nothing_lost
     moved: Lost = nothing_lost
+    shifted: Lost = nothing_lost
     double: Expr | None = None
 
     @staticmethod
     def for_model_error(
-        error: float, lost: Lost = nothing_lost, moved: Lost = nothing_lost
+        error: float,
+        lost: Lost = nothing_lost,
+        moved: Lost = nothing_lost,
+        shifted: Lost = nothing_lost,
     ) -> Tolerances:
         """Tolerances where the solved geometry is `error` (m or rad) off the file's.
 
@@ -107,16 +116,26 @@ class Tolerances:
         clamp = max(1e-11, 25.0 * error)
         further = clamp if error > ROUNDED else max(clamp, min(25.0 * error / flag, 1e-6))
         sizes = singular, flag, norm, clamp, further, fold
-        return Tolerances(*sizes, error=error, lost=lost, moved=moved)
+        return Tolerances(*sizes, error=error, lost=lost, moved=moved, shifted=shifted)
 
     def least(self, value: Expr, size: float) -> float:
         """How far outside its domain `value`, of natural size `size`, may be under a square root."""
         clamp = self.further if self.moved(value) > 0.0 else self.clamp
-        return max(clamp * size, min(_BESIDE * self.lost(value), self.wide * size))
+        least = max(clamp * size, min(_BESIDE * self.lost(value), self.wide * size))
+        if self.error <= ROUNDED:
+            return least
+        off = _WORST * self.error * self.shifted(value)
+        return max(least, min(off, _OUTSIDE * size))
 
-    def guard(self, g: ExpressionGraph, value: Expr, size: float) -> Expr:
-        """Condition that a square root of `value`, of natural size `size`, may be taken."""
-        least = g.const(-self.least(value, size))
+    def guard(
+        self, g: ExpressionGraph, value: Expr, size: float, largest: Expr | None = None
+    ) -> Expr:
+        """Condition that a square root of `value`, of natural size `size` and no larger than `largest`, may
+        be taken."""
+        outside = self.least(value, size)
+        least = g.const(-outside)
+        if self.error > ROUNDED and largest is not None and not largest.is_fixed:
+            least = g.binary("min", least, g.mul(g.const(-outside / size), largest))
         rough = self.folded(value) if self.rough is None else self.rough
         if rough is not None:
             least = g.select(rough, g.const(-self.wide * size), least)

@@ -81,7 +81,7 @@ class SineCosine(Form):
         h = g.add(g.square(a), g.square(b))
         divisor = divisor_of(g, h, tolerances, 2)
         disc = g.sub(h, g.square(r))
-        guard = tolerances.guard(g, disc, natural_size(h))
+        guard = tolerances.guard(g, disc, natural_size(h), h)
         w = g.mul(sigma, g.sqrt(at_least(g, disc, g.mul(g.const(tolerances.fold), h))))
         inverse = g.div(g.one, divisor.value)
         cosine = g.mul(g.sub(g.mul(a, r), g.mul(b, w)), inverse)

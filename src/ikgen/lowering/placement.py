@@ -73,8 +73,9 @@ class Placement:
         self.definition: dict[int, Expr] = dict(self.knowledge.binding)
         self.rounding = Rounding(graph.probes.generic, self.definition)
         self._levers = Rounding(graph.probes.generic, self.definition, unit=0.0)
+        self._shifts = Rounding(graph.probes.generic, self.definition, unit=0.0, shift=1.0)
         self._tolerances = Tolerances.for_model_error(
-            model_error, self.rounding.most, self._levers.most
+            model_error, self.rounding.most, self._levers.most, self._shifts.most
         )
         self.digits = FileDigits(self.g, self.definition, self._tolerances.fold)
         self.loses_digits = bool(graph.probes.kept) or any(map(self._folds, graph.steps))
@@ -248,6 +249,7 @@ class Placement:
             self.names[atom.id] = local_name(name)
             self.place(atom)
         self._levers.note_moved(atoms)
+        self._shifts.note_exact(atoms)
         self._settle(atoms, values)
 
     def _settle(self, atoms: Sequence[Expr], values: Sequence[Expr]) -> None:

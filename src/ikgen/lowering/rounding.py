@@ -21,12 +21,16 @@ _EXACT = frozenset({"const", "param", "gt", "and", "or", "not"})
 
 class Rounding:
     """Bounds on errors of expressions at the first `count` probes; `definition`: what solved atoms stand
-    for. `unit`: what an operation rounds by, relative to its result."""
+    for. `unit`: what an operation rounds by, relative to its result; `shift`: how far the entries of the
+    pose are off (m or 1)."""
 
-    def __init__(self, count: int, definition: dict[int, Expr], unit: float = _UNIT) -> None:
+    def __init__(
+        self, count: int, definition: dict[int, Expr], unit: float = _UNIT, shift: float = 0.0
+    ) -> None:
         self._count = count
         self._definition = definition
         self._unit = unit
+        self._shift = shift
         self._known: dict[int, Probe] = {}
 
     def note_root(self, atoms: Sequence[Expr], equation: Expr, slope: Expr) -> None:
@@ -43,6 +47,10 @@ class Rounding:
         turns = [np.abs(self._at(a)) for a in reversed(atoms)]
         off = turns if len(atoms) == 2 else [np.ones(self._count)]
         self._known |= {a.id: x for a, x in zip(atoms, off, strict=True)}
+
+    def note_exact(self, atoms: Sequence[Expr]) -> None:
+        """The atoms are what they are."""
+        self._known |= {a.id: np.zeros(self._count) for a in atoms}
 
     def of(self, e: Expr) -> Probe:
         """What an expression is off (count,)."""
@@ -65,14 +73,19 @@ class Rounding:
         return float(np.nan_to_num(self.of(e), nan=np.inf).max())
 
     def _behind(self, node: Expr) -> tuple[Expr, ...]:
-        if node.id in self._known:
+        if node.id in self._known or self._shifted(node):
             return ()
         return (self._definition[node.id],) if node.id in self._definition else node.args
 
     def _at(self, e: Expr) -> Probe:
         return e.probe[: self._count]
 
+    def _shifted(self, node: Expr) -> bool:
+        return self._shift > 0.0 and node.atom is not None and node.atom.kind == "pose"
+
     def _error(self, node: Expr, errors: list[Probe]) -> Probe:
+        if self._shifted(node):
+            return np.full(self._count, self._shift)
         if node.id in self._definition:
             return errors[0]
         value = self._at(node)
