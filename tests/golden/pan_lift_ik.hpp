@@ -2985,6 +2985,18 @@ template <class Arm, template <class> class Way> struct Projection {
   }
 
  private:
+  static constexpr double kSettled = 1e-4;  // rad or m that the nearest row may be from one of its pose, where this is flat
+
+  static bool is_new(const double* q, const Solutions& found) noexcept {
+    for (int k = 0; k < found.count; ++k) {
+      double most = 0.0;
+      for (int j = 0; j < Arm::kDof; ++j)
+        most = std::max(most, std::abs(SolutionRows<Arm>::change(j, q, found.q.data()[k].data())));
+      if (most <= kSettled) return false;
+    }
+    return true;
+  }
+
   static void solve_nearest(const double* t, Options options, Solutions& out) noexcept {
     double q[Arm::kDof];
     NearestRow<Arm>::find(t, options, options.limits, NearestRow<Arm>::kRoundOff, NearestRow<Arm>::kFirstSteps, q);
@@ -2992,7 +3004,7 @@ template <class Arm, template <class> class Way> struct Projection {
     by_columns(MotionChain<Arm>::forward(q), pose.matrix().data());
     HeldAim<Arm>::values(q, options.free);
     Way<Arm>::template solve<1>(&pose, options, &out);
-    if (SolutionRows<Arm>::place(q, options)) SolutionRows<Arm>::add(out, q, false);
+    if (is_new(q, out) && SolutionRows<Arm>::place(q, options)) SolutionRows<Arm>::add(out, q, false);
     if (out.count > 0) out.status = Arm::Status::Ok;
   }
 };
@@ -3133,9 +3145,10 @@ template <class A, class Solver> struct PathStep {
     if (status == Status::Ok) {
       const double gap = farthest(row, expected), moved = farthest(row, q);
       const bool alike = moved < kFarthest && gap < kLeastOff + kOff * moved;
-      const bool follows = alike && (singular || at_singularity || !SingularValue<A>::between(q, row));
+      const bool across = alike && !singular && !at_singularity && SingularValue<A>::between(q, row);
+      const bool follows = alike && !(across && moved > kLeastOff);
       if (follows || (depth == kDeepest && moved < kJump)) {
-        crossed = crossed || singular || !follows;
+        crossed = crossed || singular || across || !follows;
         at_singularity = singular;
         return arrive(row);
       }

@@ -2971,6 +2971,8 @@ def _branch_numbers(arm: _Arm, q: Array) -> list[int]:
 # All solutions of one pose.
 
 
+_SETTLED = 1e-4  # rad or m that the nearest row may be from one of its pose, where this is flat
+
 _One = tuple[list[list[float]], Row | None, Row]
 
 
@@ -3039,7 +3041,9 @@ def _projected(arm: _Arm, asked: _One, limits: bool) -> list[_Found]:
     pose: list[list[float]] = _forward(arm.chain, row).tolist()
     nearest = pose, near, tuple(_held_of(arm, np.array(row)).tolist())
     found = _fitting(arm, nearest, limits).rows
-    if len(found) < arm.most and _is_new(arm, row, found):
+    rows = np.array([q for q, _ in found]).reshape(-1, len(row))
+    new = np.abs(_differences(arm, rows, np.array(row))).max(axis=1) > _SETTLED
+    if len(found) < arm.most and new.all():
         found += _place_rows(arm, [(row, False)], near, limits)
     return found
 
@@ -3282,10 +3286,11 @@ class _Walk:
             k = int(gap.argmin())
             moved = float(np.abs(rows[k] - self.q).max())
             follows = moved < _path_following_FARTHEST and gap[k] < _LEAST_OFF + _OFF * moved
-            follows = follows and (bool(flags[k]) or not self._across(rows[k]))
+            across = follows and not flags[k] and self._across(rows[k])
+            follows = follows and not (across and moved > _LEAST_OFF)
             if follows or (depth == _DEEPEST and moved < _JUMP):
                 self.singular = bool(flags[k])
-                self.crossed = self.crossed or self.singular or not follows
+                self.crossed = self.crossed or self.singular or across or not follows
                 return self._arrive(rows[k])
             status = Status.SINGULAR
         if depth == _DEEPEST or self.left < 0 or (depth >= _SHALLOW and not len(rows)):

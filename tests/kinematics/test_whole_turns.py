@@ -113,6 +113,7 @@ def test_limits_beyond_one_period_have_each_row_once(
 
 
 @pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER)
+@pytest.mark.long
 def test_a_rounded_crank_of_several_turns_is_verified_in_both_languages(tmp_path: Path) -> None:
     robot = crank_robot(tmp_path, 0.5, (-7.0, 13.0))
     round_elbow(robot)

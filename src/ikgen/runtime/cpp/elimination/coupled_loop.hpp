@@ -52,7 +52,7 @@ inline Loop coupled_loop(const CoupledChain<Plan>& F, const Frame& T, const std:
     out.C[i < 1 ? i : i + 1] = out.reverse ? inverse(link[(k + 4) % 5 + 1]) : link[k + 1];
   }
   out.order[2] = Plan::kCoupled;
-  out.C[1] = {{{1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}}, {}};
+  out.C[1] = kIdentity;
   return out;
 }
 

@@ -58,9 +58,10 @@ template <class A, class Solver> struct PathStep {
     if (status == Status::Ok) {
       const double gap = farthest(row, expected), moved = farthest(row, q);
       const bool alike = moved < kFarthest && gap < kLeastOff + kOff * moved;
-      const bool follows = alike && (singular || at_singularity || !SingularValue<A>::between(q, row));
+      const bool across = alike && !singular && !at_singularity && SingularValue<A>::between(q, row);
+      const bool follows = alike && !(across && moved > kLeastOff);
       if (follows || (depth == kDeepest && moved < kJump)) {
-        crossed = crossed || singular || !follows;
+        crossed = crossed || singular || across || !follows;
         at_singularity = singular;
         return arrive(row);
       }

@@ -131,10 +131,11 @@ class _Walk:
             k = int(gap.argmin())
             moved = float(np.abs(rows[k] - self.q).max())
             follows = moved < _FARTHEST and gap[k] < _LEAST_OFF + _OFF * moved
-            follows = follows and (bool(flags[k]) or not self._across(rows[k]))
+            across = follows and not flags[k] and self._across(rows[k])
+            follows = follows and not (across and moved > _LEAST_OFF)
             if follows or (depth == _DEEPEST and moved < _JUMP):
                 self.singular = bool(flags[k])
-                self.crossed = self.crossed or self.singular or not follows
+                self.crossed = self.crossed or self.singular or across or not follows
                 return self._arrive(rows[k])
             status = Status.SINGULAR
         if depth == _DEEPEST or self.left < 0 or (depth >= _SHALLOW and not len(rows)):

@@ -21,6 +21,7 @@ from ikgen.runtime.python.newton.arm_newton import refined
 from ikgen.runtime.python.newton.chord_steps import chord_steps
 from ikgen.runtime.python.newton.refinement import steeper
 from ikgen.runtime.python.rows.row_branches import branch_names
+from ikgen.runtime.python.rows.row_links import differences
 from ikgen.runtime.python.rows.row_placement import (
     apart,
     in_order,
@@ -37,6 +38,8 @@ from ikgen.runtime.python.solving.doubtful_rows import seeded_rows
 from ikgen.runtime.python.solving.projection import nearest_row, off_by
 
 __all__ = ["One", "eliminated_answers", "held_reason", "solutions_of", "solve_pose", "sure_answer"]
+
+_SETTLED = 1e-4  # rad or m that the nearest row may be from one of its pose, where this is flat
 
 One = tuple[list[list[float]], Row | None, Row]
 """A pose, its seed if there is one, and values of held joints."""
@@ -107,7 +110,9 @@ def _projected(arm: Arm, asked: One, limits: bool) -> list[Found]:
     pose: list[list[float]] = forward(arm.chain, row).tolist()
     nearest = pose, near, tuple(held_of(arm, np.array(row)).tolist())
     found = _fitting(arm, nearest, limits).rows
-    if len(found) < arm.most and is_new(arm, row, found):
+    rows = np.array([q for q, _ in found]).reshape(-1, len(row))
+    new = np.abs(differences(arm, rows, np.array(row))).max(axis=1) > _SETTLED
+    if len(found) < arm.most and new.all():
         found += place_rows(arm, [(row, False)], near, limits)
     return found
 
