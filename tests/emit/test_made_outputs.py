@@ -12,7 +12,14 @@ from tests.support.made_programs import made_module, with_limits
 
 from ikgen.emit import moveit
 from ikgen.emit.blanks import pairs
-from ikgen.emit.cpp.cpp_emitter import _depth_first, _elimination, _headers, _rough, emit_header
+from ikgen.emit.cpp.cpp_emitter import (
+    _depth_first,
+    _elimination,
+    _far_limits,
+    _headers,
+    _rough,
+    emit_header,
+)
 from ikgen.emit.cpp.cpp_language import number
 from ikgen.emit.cpp.cpp_twist_chain import twist_lines
 from ikgen.emit.derivation import Held
@@ -96,6 +103,14 @@ def test_the_elimination_about_parallel_axes_comes_with_its_header(bounded: bool
     assert "roots/trig_quartic.hpp" in _headers(module) and "solving/lane_solve.hpp" in _headers(
         module
     )
+
+
+def test_limits_are_far_by_the_joint_s_own_period() -> None:
+    module = with_limits(made_module(), (2.0, 5.0), (-5.0, -2.0), (4.0, 5.0))
+    rows = tuple(replace(row, scale=2.0) for row in module.dh.rows)
+    half = replace(module, dh=replace(module.dh, rows=rows))
+    assert [_far_limits(module, j) for j in range(3)] == [False, False, False]
+    assert [_far_limits(half, j) for j in range(3)] == [True, True, False]
 
 
 @pytest.mark.parametrize(

@@ -114,9 +114,15 @@ def test_limits_beyond_one_period_have_each_row_once(
 
 @pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER)
 @pytest.mark.long
-def test_a_rounded_crank_of_several_turns_is_verified_in_both_languages(tmp_path: Path) -> None:
-    robot = crank_robot(tmp_path, 0.5, (-7.0, 13.0))
-    round_elbow(robot)
+@pytest.mark.parametrize(
+    ("ratio", "limits", "rounded"), [(0.5, (-7.0, 13.0), True), (2.0, (2.0, 5.0), False)]
+)
+def test_a_crank_with_a_period_of_its_own_is_verified_in_both_languages(
+    tmp_path: Path, ratio: float, limits: tuple[float, float], rounded: bool
+) -> None:
+    robot = crank_robot(tmp_path, ratio, limits)
+    if rounded:
+        round_elbow(robot)
     outputs = Outputs(("python", "cpp"), tmp_path / "out", samples=300)
     made = generate(request(robot), outputs)
     assert sorted(made.reports) == ["cpp", "python"]

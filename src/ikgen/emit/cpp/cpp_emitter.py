@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -91,7 +90,7 @@ def _shell(module: SolverModule, branches: list[int], most: int) -> str:
         joints=module.dh.joints,
         lower=[number(j.limits.lower) for j in module.dh.joints],
         upper=[number(j.limits.upper) for j in module.dh.joints],
-        far=any(j.limits.lower > math.pi or j.limits.upper < -math.pi for j in module.dh.joints),
+        far=any(_far_limits(module, j) for j in range(module.dh.dof)),
         text=text,
         values=text.joint_values(),
         rough=_rough(module, module.policy),
@@ -116,6 +115,12 @@ def _shell(module: SolverModule, branches: list[int], most: int) -> str:
         literal=literal,
         comment=comment,
     )
+
+
+def _far_limits(module: SolverModule, joint: int) -> bool:
+    """Whether a joint's limits leave no room within half a period of 0, about which values are given."""
+    limits, half = module.dh.joints[joint].limits, 0.5 * module.period(joint)
+    return half > 0.0 and (limits.lower > half or limits.upper < -half)
 
 
 def _known_facts(module: SolverModule) -> ArmFacts:

@@ -114,7 +114,7 @@ template <class Arm> struct BranchArc {
     return false;
   }
 
-  // Turns in (-pi, pi], and how far that is outside.
+  // Within half a period, and how far that is outside.
   bool finish(Point& p) const noexcept {
     for (int k = 0; k < kMoving; ++k)
       p.q[kJoints[k]] = SolutionRows<Arm>::within_period(kJoints[k], p.q[kJoints[k]]);

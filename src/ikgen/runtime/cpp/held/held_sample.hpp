@@ -145,7 +145,7 @@ template <class Arm> struct HeldSample {
     return bits;
   }
 
-  // A joint's value, no more than half a turn from 0.
+  // A joint's value, no more than half a period from 0.
   static double turned(int j, double x) noexcept {
     return Arm::kPeriod[j] > 0.0 && !Arm::kHeld[j] ? without_turns(x, Arm::kPeriod[j]) : x;
   }

@@ -9,7 +9,7 @@
 
 namespace ikgen_runtime {
 
-// Arm: as for CarefulSolve; kFarLimits, whether limits leave no room within half a turn of 0; kNewton, whether all rows
+// Arm: as for CarefulSolve; kFarLimits, whether limits leave no room within half a period of 0; kNewton, whether all rows
 // are to be refined, then refine<P>.
 template <class Arm> struct LaneSolve {
   static constexpr int kBatch = kNative > 2 ? kNative / 2 : 1;  // poses at once
