@@ -18,6 +18,7 @@ template <class Arm> struct HeldDescent {
   static constexpr double kInside = 4e-10;  // of an end, where that is outside the limits by a hair, or a fold
   static constexpr double kSteep = 1e3;     // slopes that tell of a fold, and not which way is down
   static constexpr int kSteps = 40, kHalve = 6;
+  static constexpr int kBeside = 3, kBesideFold = 6;  // values that are looked at beside an end
   static constexpr int kTogether = kNative;  // minima that are refined at once
 
   const HeldSweep<Arm>& sweep;
@@ -35,10 +36,10 @@ template <class Arm> struct HeldDescent {
       const Minimum& m = *minima[k];
       if (m.best.at == m.low || m.best.at == m.high) refine_end(*minima[k]);
     }
-    if (preference.prefer == Arm::Prefer::Dexterous) {
-      for (int k = 0; k < count; ++k) look_beside(*minima[k]);
-      return interpolate(minima, count);
-    }
+    const bool dexterous = preference.prefer == Arm::Prefer::Dexterous;
+    for (int k = 0; k < count; ++k)
+      if (dexterous || minima[k]->best.fold) look_beside(*minima[k]);
+    if (dexterous) return interpolate(minima, count);
     for (int k = 0; k < count; ++k) descend(*minima[k]);
   }
 
@@ -59,12 +60,15 @@ template <class Arm> struct HeldDescent {
     return judged(beside(m.best.at + std::copysign(kInside, other - m.best.at), m));
   }
 
-  // Off an end that is the best, to the best of a few values beside it: singular values may fall from there, and rise.
+  // Off an end that is the best, to the best of a few values beside it: singular values may fall from there, and rise, and
+  // beside a fold joint values go as the root of the held one's, of which the end itself tells no slope.
   void look_beside(Minimum& m) const noexcept {
     if (m.best.at != m.low && m.best.at != m.high) return;
     const double from = m.best.at, way = (from == m.low ? m.high : m.low) - from;
     Point least = m.best;
-    for (const double share : {0.25, 0.0625, 0.015625}) {
+    double share = 1.0;
+    for (int i = 0; i < (m.best.fold ? kBesideFold : kBeside); ++i) {
+      share *= 0.25;
       const Point p = judged(beside(from + share * way, m));
       if (p.cost < least.cost) least = p;
     }
