@@ -21,6 +21,7 @@ from typing import Any
 
 from benchmarks.peer_picture import picture
 from benchmarks.results import Measured, read_result
+from benchmarks.shown_names import ARMS, CLASSES, RANDOM, SOAKED
 
 __all__ = [
     "BLOCKS", "COMPARISON", "HOME", "PAGE", "PAGES", "PICTURE", "MarkError", "drawn", "filled_in",
@@ -33,47 +34,6 @@ HOME = COMPARISON.parents[1] / "pictures/speed_ur5e.svg"
 """The part of the picture that the home page of the documentation shows."""
 _START = re.compile(r"<!-- figures: (\w+) -->\n")
 _END = "<!-- end of figures -->\n"
-CLASSES = {
-    "3 DOF": "3 joints",
-    "4 DOF other": "4 joints, other",
-    "4 SCARA (RRPR)": "SCARA",
-    "6R general (no triple)": "6R, general",
-    "6R offset wrist, 2||3 (CRX/Jaco/xArm)": "6R, offset wrist, axes 2 and 3 parallel",
-    "6R spherical shoulder (legs)": "6R, spherical shoulder",
-    "6R spherical wrist + ortho-parallel base (OPW)": "6R, spherical wrist and ortho-parallel base",
-    "6R three parallel 2-4, offset wrist": "6R, axes 2-4 parallel, offset wrist",
-    "6R three parallel 2-4, orthogonal wrist (UR)": "6R, axes 2-4 parallel, orthogonal wrist",
-    "6R three parallel 2-4, orthogonal wrist": "6R, axes 2-4 parallel, orthogonal wrist",
-    "coupled: mimic joints inside the chain": "coupled by mimic joints",
-    "gantry (P P ..)": "gantry",
-    "redundant >7R": "more than 7R",
-    "redundant with prismatic": "redundant, with slides",
-}
-"""What the collection calls a class -> what the README calls it, where that is not the same with a comma
-after the kinds of joints."""
-RANDOM = {
-    "3-6": "3 to 6, a quarter slides, right angles",
-    "6R": "6R, any twists",
-    "5R1P": "5R1P, any twists",
-    "4R2P": "4R2P, any twists",
-}
-"""Classes of random tables -> what the README calls them."""
-ARMS = {
-    "IRB 2400": "ABB IRB 2400",
-    "KR 6 R900": "KUKA KR 6 R900",
-    "UR5e": "UR5e",
-    "Panda": "Panda, joint 7 held",
-    "WAM": "Barrett WAM, joint 3 held",
-    "M1013": "Doosan M1013",
-    "CRX-10iA": "FANUC CRX-10iA",
-}
-"""The arms of the comparison that the README shows, with its names for them."""
-
-SOAKED = (
-    "rows", "wrong", "random poses", "missed", "without a row",
-    "beside singularities", "missed", "without a row",
-)  # fmt: skip
-"""What is counted of poses that were put through code."""
 
 
 class MarkError(Exception):
@@ -242,6 +202,20 @@ def _collection_soak(read: Callable[[str], Measured]) -> str:
     return _table(("class", "arms", *SOAKED), rows) + _source(measured)
 
 
+def _held(read: Callable[[str], Measured]) -> str:
+    measured = read("held_values")
+    rows = []
+    for form in measured.found["forms"]:
+        counts = (form[n] for n in ("arms", "intervals", "missed", "off", "searches", "worse"))
+        times = (form[n] for n in ("motion", "motion_most", "search", "search_most"))
+        rows.append([form["form"], *(f"{n:,}" for n in counts), *map(_short, times)])
+    head = (
+        "closed form", "arms", "intervals", "missed", "ends off", "searches", "worse",
+        "`self_motion`", "most", "`search`", "most",
+    )  # fmt: skip
+    return _table(head, rows) + _source(measured)
+
+
 def _batch(read: Callable[[str], Measured]) -> str:
     """The shortest time that the home page tells."""
     rows = read("peers").found["times"]
@@ -263,12 +237,14 @@ BLOCKS: dict[str, Callable[[Callable[[str], Measured]], str]] = {
     "answers": _answers,
     "soak": _soak,
     "collection": _collection_soak,
+    "held": _held,
     "batch": _batch,
 }
 """Block -> its text."""
 PAGES = {
     PAGE: ("public", "corpus", "speed", "soak", "collection", "random", "tables", "peers"),
     COMPARISON: ("peers", "answers"),
+    COMPARISON.parents[1] / "how-to/redundant-arms.md": ("held",),
     COMPARISON.parents[1] / "index.md": ("batch",),
 }
 """Page -> its blocks."""
