@@ -1066,15 +1066,23 @@ template <class Arm> struct SingularValue {
 
   static bool between(const double* a, const double* b) noexcept {
     if (Arm::kFree > 0) return false;
-    const PoseError<Arm> here(a, HeldAim<Arm>::own(a)), there(b, HeldAim<Arm>::own(b));
-    double M[Arm::kDof][Arm::kDof] = {};
+    double here[kEquations][Arm::kDof], there[kEquations][Arm::kDof], M[Arm::kDof][Arm::kDof] = {};
+    of_all_joints(a, here);
+    of_all_joints(b, there);
     for (int e = 0; e < kEquations; ++e)
       for (int i = 0; i < Arm::kDof; ++i)
-        for (int j = 0; j < Arm::kDof; ++j) M[i][j] += here.slope[e][i] * there.slope[e][j];
+        for (int j = 0; j < Arm::kDof; ++j) M[i][j] += here[e][i] * there[e][j];
     return !keeps_orientation(M);
   }
 
  private:
+  static Frame of_all_joints(const double* q, double (&slope)[kEquations][Arm::kDof]) noexcept {
+    double J[6][Arm::kDof];
+    const Frame tip = MotionChain<Arm>::forward(q, J);
+    Arm::Task::slope(tip, J, slope);
+    return tip;
+  }
+
   template <class X> static auto above(const X (&slope)[kEquations][Arm::kDof], double bound) noexcept {
     X A[kRank][kRank];
     for (int a = 0; a < kRank; ++a)

@@ -170,26 +170,22 @@ def _yaml(path: Path) -> Any:
     from ikgen.importers.xacro.refusals import ExpansionLimitError
     from ikgen.importers.xacro.yaml_values import parse_yaml
 
-    text = _text(path)
+    def check(node: Any) -> None:
+        for key, line in _repeated(node):
+            problem, hint = f"the calibration has '{key}' twice", "keep the one that is meant"
+            raise BadDescriptionError(problem, file=str(path), line=line, hint=hint)
+
     try:
-        data = parse_yaml(text, str(path), {})
-        repeated = next(_repeated(yaml.compose(text, yaml.SafeLoader)), None)
+        return parse_yaml(_text(path), str(path), {}, check)
     except (yaml.YAMLError, ExpansionLimitError) as error:
         what = " ".join(str(error).split())
         hint = "write it as ur_description's calibration.yaml: kinematics, links, their six numbers"
         raise BadDescriptionError(f"not YAML: {what}", file=str(path), hint=hint) from None
-    if repeated is not None:
-        key, line = repeated
-        problem = f"the calibration has '{key}' twice"
-        raise BadDescriptionError(
-            problem, file=str(path), line=line, hint="keep the one that is meant"
-        )
-    return data
 
 
 def _repeated(node: Any) -> Iterator[tuple[str, int]]:
     """Keys that a table, or one in it, has twice, and the line of the second."""
-    table = node.value if node is not None and node.id == "mapping" else ()
+    table = node.value if node.id == "mapping" else ()
     seen: set[str] = set()
     for key, value in table:
         if key.id == "scalar" and key.value in seen:

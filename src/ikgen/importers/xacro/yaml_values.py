@@ -16,8 +16,13 @@ LARGEST_YAML = 2**19
 _DEEPEST = 100
 
 
-def parse_yaml(text: str, name: str, units: Mapping[str, Callable[[str], float]]) -> Any:
-    """The data of a YAML text; `name` is for the marks of its errors.
+def parse_yaml(
+    text: str,
+    name: str,
+    units: Mapping[str, Callable[[str], float]],
+    check: Callable[[Any], None] = lambda node: None,
+) -> Any:
+    """The data of a YAML text; `name` is for the marks of its errors, `check` looks at its nodes before.
 
     `units` gives the value of a scalar with a tag (`!degrees 90`). Raises `yaml.YAMLError`, and
     `ExpansionLimitError` for aliases that multiply beyond bounds.
@@ -35,6 +40,7 @@ def parse_yaml(text: str, name: str, units: Mapping[str, Callable[[str], float]]
         if node is None:
             return None
         _size(node, {}, 0)
+        check(node)
         return loader.construct_document(node)
     except RecursionError:
         raise ExpansionLimitError("reads YAML that nests too deep") from None

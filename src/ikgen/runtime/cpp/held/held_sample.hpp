@@ -147,7 +147,7 @@ template <class Arm> struct HeldSample {
 
   // A joint's value, no more than half a period from 0.
   static double turned(int j, double x) noexcept {
-    return Arm::kPeriod[j] > 0.0 && !Arm::kHeld[j] ? without_turns(x, Arm::kPeriod[j]) : x;
+    return Arm::kHeld[j] ? x : SolutionRows<Arm>::within_period(j, x);
   }
 
   // Takes the rows of the pose, or of one beside it, refined where that is needed: in lanes where all are, and not at all if

@@ -10,7 +10,7 @@ from operator import lt
 import numpy as np
 
 from ikgen.runtime.python.arm.solved_arm import Arm, Found
-from ikgen.runtime.python.arrays.angles import WHOLE_TURN
+from ikgen.runtime.python.arrays.angles import WHOLE_TURN, without_turns
 from ikgen.runtime.python.arrays.array_types import Array, Flags, Row
 from ikgen.runtime.python.rows.row_links import differences, slide_scale
 from ikgen.runtime.python.rows.row_pairs import pairs
@@ -64,8 +64,7 @@ def apart(arm: Arm, q: Array) -> bool:
     ):
         return True
     later, earlier = pairs(len(q))
-    gap = q[later] - q[earlier]
-    gap -= period * np.rint(gap / period)
+    gap = without_turns(q[later] - q[earlier], period)
     most = np.maximum.reduce(np.abs(gap), axis=1, initial=0.0)
     return bool((most > arm.policy.coincident).all())
 
