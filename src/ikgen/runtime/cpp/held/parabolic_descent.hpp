@@ -48,6 +48,19 @@ template <class Arm> struct HeldMinimum {
   }
 };
 
+// Through a point and two others, `a` and `b` before it, from which it falls by `fall_a` and `fall_b` (its own less theirs).
+struct Parabola {
+  double bend, slope;
+
+  Parabola(double a, double fall_a, double b, double fall_b) noexcept
+      : bend((fall_a / a - fall_b / b) / (b - a)), slope(fall_a / a + bend * a) {}
+
+  double rise(double step) const noexcept { return step * (slope + bend * step); }
+
+  // The step to where it is least; not finite where it has no such place.
+  double vertex() const noexcept { return bend > 0.0 ? -slope / (2.0 * bend) : kInfinity; }
+};
+
 // Parabolic interpolation guarded by the golden section (Brent 1973), one value after the other: begin(minimum), then while
 // next(), take(what the row at `trial` costs).
 template <class Arm> struct ParabolicDescent {
@@ -56,6 +69,7 @@ template <class Arm> struct ParabolicDescent {
   // How near to a minimum is enough, of singular values, which have kinks: beside a fold joint values change as the root
   // of the held one's, up to 1e3 times as much.
   static constexpr double kNear = 1e-9;
+  static constexpr double kForeseen = 1e-12;  // how well a parabola tells the cost at its vertex, where it is the least
   static constexpr int kSteps = 60;
   double trial;
 
@@ -88,7 +102,10 @@ template <class Arm> struct ParabolicDescent {
     if (at_end) {
       at_end = false;
       done = p.cost >= best.cost && p.cost < kInfinity;
-    } else if (p.cost < best.cost) {
+      return;
+    }
+    done = std::abs(p.cost - foreseen) <= kForeseen;
+    if (p.cost < best.cost) {
       (p.at >= best.at ? low : high) = best.at;
       third = second;
       third_cost = second_cost;
@@ -112,7 +129,7 @@ template <class Arm> struct ParabolicDescent {
  private:
   static constexpr double kGolden = 0.3819660112501051;
   Minimum* minimum;
-  double low, high, step, before, second, third, second_cost, third_cost;
+  double low, high, step, before, second, third, second_cost, third_cost, foreseen;
   int steps = 0;
   bool at_end, done = false;
 
@@ -125,11 +142,11 @@ template <class Arm> struct ParabolicDescent {
       return std::abs(remote - x) > 2.0 * least;
     }
     if (steps == kSteps || std::abs(x - middle) <= 2.0 * least - 0.5 * (high - low)) return false;
-    const double left = low - x, right = high - x, ways[2] = {x - second, x - third};
-    const double falls[2] = {best.cost - second_cost, best.cost - third_cost};
-    double there = 0.0;
+    foreseen = kInfinity;
+    const Parabola through(x - second, best.cost - second_cost, x - third, best.cost - third_cost);
+    const double there = through.vertex();
     if (std::abs(before) > least && second_cost < kInfinity && third_cost < kInfinity &&
-        to_vertex(ways, falls, before, left, right, there)) {
+        std::abs(there) < std::abs(0.5 * before) && there > low - x && there < high - x) {
       before = step;
       step = there;
       if (steps > 1 && std::abs(step) < least) return false;
@@ -139,21 +156,9 @@ template <class Arm> struct ParabolicDescent {
     }
     const double u = std::abs(step) >= least ? x + step : x + (step > 0.0 ? least : -least);
     trial = std::min(std::max(u, minimum->low), minimum->high);
+    if (step == there) foreseen = best.cost + through.rise(trial - x);
     ++steps;
     return true;
-  }
-
-  // The step to the vertex of the parabola through a point and two others, `ways` before it and lower by `falls`; whether it
-  // lies between `left` and `right` and is less than half of the step `before`.
-  static bool to_vertex(const double (&ways)[2], const double (&falls)[2], double before, double left, double right,
-                        double& step) noexcept {
-    const double r = ways[0] * falls[1];
-    double t = ways[1] * falls[0], p = ways[1] * t - ways[0] * r;
-    t = 2.0 * (t - r);
-    p = t > 0.0 ? -p : p;
-    t = std::abs(t);
-    step = p / t;
-    return std::abs(p) < std::abs(0.5 * t * before) && p > t * left && p < t * right;
   }
 };
 
