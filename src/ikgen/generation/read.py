@@ -122,7 +122,8 @@ def _read(request: Request, tree: JointTree | None) -> Reading:
 
 
 def _of_chain(tree: JointTree, chain: Chain) -> JointTree:
-    """Without what was odd about joints that do not move the chain."""
+    """Without what was odd about joints that do not move the chain, and with what is of those that do."""
+    from ikgen.chains.follower_limits import beyond_own_limits
     from ikgen.importers.urdf.topology import TreeIndex
 
     between = TreeIndex.of(tree).path(chain.base_link, chain.tip_link) or ()
@@ -130,7 +131,8 @@ def _of_chain(tree: JointTree, chain: Chain) -> JointTree:
     others = {joint.name for joint in tree.joints} - near
     about = ((text, _ABOUT_JOINT.search(text)) for text in tree.source.warnings)
     kept = tuple(text for text, found in about if found is None or found[1] not in others)
-    return replace(tree, source=replace(tree.source, warnings=kept))
+    warnings = (*kept, *beyond_own_limits(tree, chain, between))
+    return replace(tree, source=replace(tree.source, warnings=warnings))
 
 
 def _with_left_out(tree: JointTree, request: Request) -> JointTree:
