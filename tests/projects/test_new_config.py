@@ -122,6 +122,20 @@ def test_arms_are_added_to_a_config(tmp_path: Path) -> None:
         add_to_config(tmp_path / "pyproject.toml", table, robot_arms(table), ["python"])
 
 
+def test_another_chain_of_a_robot_is_added_by_its_tip(tmp_path: Path) -> None:
+    """Of a robot with one arm names have no tip; a number would not say what it is."""
+    robot = tmp_path / "arm.urdf"
+    links = branch("m", ("x", "y", "z", "end"))
+    robot.write_text(f'<robot name="one"><link name="waist_link"/>{links}</robot>')
+    path = config_path(tmp_path)
+    written(Request(robot), path)
+    chain = Request(robot, base="m_x_link", tip="m_z_link")
+    (added,) = add_to_config(path, chain, robot_arms(chain), ["python"])
+    other = replace(chain, base="m_y_link")
+    (again,) = add_to_config(path, other, robot_arms(other), ["python"])
+    assert (added.name, again.name) == ("one_m_z_link", "one_m_z_link_2")
+
+
 def test_arms_between_links_that_are_named() -> None:
     yumi = Request(FIXTURES / "abb_yumi.urdf")
     every = robot_arms(yumi)

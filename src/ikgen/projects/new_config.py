@@ -15,6 +15,7 @@ from ikgen.generation.read import arm_name, read, read_tree
 from ikgen.generation.record import seen_from
 from ikgen.generation.request import Request
 from ikgen.importers.named_robots import is_named
+from ikgen.model.module_name import identifier
 from ikgen.projects.config import CONFIG, PYPROJECT, load_config
 
 if TYPE_CHECKING:
@@ -113,11 +114,13 @@ def _arm(robot: str, tip: str, ways: Sequence[ChainCandidate], several: bool) ->
 
 
 def _told_apart(arms: Iterable[ArmTable], taken: Iterable[str] = ()) -> list[ArmTable]:
-    """The arms, those whose names are taken, or an earlier one has, numbered."""
+    """The arms, those whose names are taken, or an earlier one has, with their tip, or numbered."""
     found: list[ArmTable] = []
     names = set(taken)
     for arm in arms:
-        candidates = (arm.name, *(f"{arm.name}_{k}" for k in range(2, len(names) + 3)))
+        tip = arm.tip or ""
+        longer = arm.name if arm.name.endswith(identifier(tip)) else arm_name(arm.name, tip)
+        candidates = (arm.name, longer, *(f"{longer}_{k}" for k in range(2, len(names) + 3)))
         name = next(name for name in candidates if name not in names)
         names.add(name)
         found.append(replace(arm, name=name))
