@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
-from functools import cache, partial
+from functools import cache, cached_property, partial
 from itertools import product
 from math import asin, atan2, ceil, copysign, floor, inf, isfinite, pi, remainder, sqrt
 from operator import lt
@@ -282,7 +282,7 @@ class _Chain:
     offset: Array
     slides: tuple[int, ...]
     drive: Array | None
-    period: tuple[float, ...]
+    dof: int
 
 
 def _chain_of(frames: Array, motions: tuple[_Motion, ...], dof: int) -> _Chain:
@@ -304,7 +304,6 @@ def _chain_of(frames: Array, motions: tuple[_Motion, ...], dof: int) -> _Chain:
     slides = tuple(i for i, m in enumerate(motions) if not m[1])
     drive = scale[:, None] * (joint[:, None] == np.arange(dof))
     alike = np.array_equal(drive, np.eye(dof))
-    period = tuple(_period([m for m in motions if m[0] == j]) for j in range(dof))
     return _Chain(
         frames,
         motions,
@@ -315,22 +314,8 @@ def _chain_of(frames: Array, motions: tuple[_Motion, ...], dof: int) -> _Chain:
         offset,
         slides,
         None if alike else drive,
-        period,
+        dof,
     )
-
-
-def _period(motions: Sequence[_Motion]) -> float:
-    """How far apart (rad) values of a joint are that are the same configuration."""
-    speeds = np.abs([m[2] for m in motions])
-    if not motions or not all(m[1] for m in motions):
-        return 0.0
-    least = float(speeds.min())
-    alike = bool((speeds - least < 1e-12 * least).all())
-    for n in range(1, max(int(least + 1e-12), alike) + 1):
-        turns = speeds * n / least
-        if (np.abs(turns - np.round(turns)) < 1e-12 * turns).all():
-            return 2.0 * pi * n / least
-    return 0.0
 
 
 def _link_motions(chain: _Chain, parts: Array, q: Array) -> Array:
@@ -347,7 +332,7 @@ def _link_motions(chain: _Chain, parts: Array, q: Array) -> Array:
 
 def _in_line(chain: _Chain, q: ArrayLike) -> tuple[tuple[int, ...], Array]:
     """The shape of what q (..., dof) are in front, and q (k, dof)."""
-    values, dof = _real_array(q, "q"), len(chain.period)
+    values, dof = _real_array(q, "q"), chain.dof
     if values.ndim < 1 or values.shape[-1] != dof:
         raise ValueError(f"q has shape {values.shape}, expected (..., {dof})")
     return values.shape[:-1], values.reshape(-1, dof)
@@ -568,6 +553,11 @@ class _Arm:
     angle: None = None
     freedoms: int = 6
 
+    @cached_property
+    def placing(self) -> Row:
+        """`period`, 0 of held joints, whose values are as given."""
+        return tuple(0.0 if j in self.free else turn for j, turn in enumerate(self.period))
+
     @property
     def rank(self) -> int:
         """How many freedoms the task fixes, or the arm has if these are less."""
@@ -786,7 +776,7 @@ def _aims(arm: _Arm, T: Array, held: Array) -> Array:
 
 def _differences(arm: _Arm, a: Array, b: Array) -> Array:
     """b - a (..., dof), of turning joints on the shortest way."""
-    return _within_periods(b - a, arm.chain.period)
+    return _within_periods(b - a, arm.period)
 
 
 def _slide_scale(values: Array) -> Array:
@@ -808,7 +798,7 @@ def _pairs(count: int) -> tuple[_Index, _Index]:
 
 def _is_new(arm: _Arm, row: Row, kept: Sequence[_Found]) -> bool:
     """Whether the row differs from all kept ones, whole turns aside."""
-    near, period = arm.policy.coincident, arm.chain.period[::-1]
+    near, period = arm.policy.coincident, arm.period[::-1]
     for other, _ in kept:
         for a, b, turn in zip(reversed(row), reversed(other), period):  # the last ones differ most
             gap = abs(a - b)
@@ -823,7 +813,7 @@ def _is_new(arm: _Arm, row: Row, kept: Sequence[_Found]) -> bool:
 
 def _same_rows(arm: _Arm, a: Array, b: Array) -> _Flags:
     """Which rows a (k, dof) are the rows b (k, dof), by what `_is_new` goes by."""
-    bound = np.where(np.array(arm.chain.period) > 0.0, 1.0, _slide_scale(a))
+    bound = np.where(np.array(arm.period) > 0.0, 1.0, _slide_scale(a))
     gap = np.abs(_differences(arm, a, b))
     return np.asarray((gap <= arm.policy.coincident * bound).all(axis=1))
 
@@ -836,8 +826,8 @@ def _distinct(arm: _Arm, q: Array, valid: _Flags) -> _Flags:
     for j in reversed(range(q.shape[2])):  # the last joints differ between most rows
         value = q[:, :, j].T
         gap = np.abs(value[later] - value[earlier])
-        if arm.chain.period[j]:
-            same &= (gap <= near) | (np.abs(gap - arm.chain.period[j]) <= near)
+        if arm.period[j]:
+            same &= (gap <= near) | (np.abs(gap - arm.period[j]) <= near)
         else:
             same &= gap <= near * _slide_scale(value[later])
         if not same.any():
@@ -858,7 +848,7 @@ def _rows_at_limits(
 ) -> tuple[list[_Found], list[tuple[_Found, Row]]]:
     """`_place_rows`, and of the dropped rows those hardly outside."""
     inside, close = [], []
-    least, most = _one_turn(arm.lower, arm.upper, arm.period, limits)
+    least, most = _one_turn(arm.lower, arm.upper, arm.placing, limits)
     for row, flag in rows:
         if near is None and all(map(lt, least, row)) and all(map(lt, row, most)):
             inside.append((row, flag))
@@ -883,7 +873,7 @@ def _one_turn(low: Row, high: Row, period: Row, limits: bool) -> tuple[Row, Row]
 def _place(arm: _Arm, row: Row, near: Row | None, limits: bool) -> tuple[Row | None, bool]:
     """The row on its turns, None where it is far outside."""
     out, beyond = [], False
-    for j, (q, turn, low, high) in enumerate(zip(row, arm.period, arm.lower, arm.upper)):
+    for j, (q, turn, low, high) in enumerate(zip(row, arm.placing, arm.lower, arm.upper)):
         shift = 0.0
         if turn:
             if q <= -0.5 * turn:
@@ -940,7 +930,7 @@ def _place_rows_batch(
     """Rows (N, M, dof) on the right turns, in place, which of them lie inside the limits, and which may be
     hardly outside."""
     inside, close, reach = (*np.ones((2, *q.shape[:2]), dtype=bool), arm.policy.limit_reach)
-    for j, (turn, low, high) in enumerate(zip(arm.period, arm.lower, arm.upper)):
+    for j, (turn, low, high) in enumerate(zip(arm.placing, arm.lower, arm.upper)):
         value = q[..., j]
         least, most = low - arm.policy.limit_tolerance, high + arm.policy.limit_tolerance
         if turn:
@@ -1077,7 +1067,7 @@ class _Asked:
         (n,)."""
         q = np.zeros((len(self.T), len(arm.lower))) if self.near is None else self.near.copy()
         if turn is not None:
-            q[:, np.array(arm.chain.period) > 0.0] += turn[:, None]
+            q[:, np.array(arm.period) > 0.0] += turn[:, None]
         q[:, list(arm.free)] = self.held[:, : len(arm.free)]
         return q
 
@@ -1493,7 +1483,7 @@ def _kept(arm: _Arm, parts: _Parts) -> tuple[_Index, Array]:
     order = np.lexsort((parts.place, parts.owner))
     order = order[np.abs(left[order]) < arm.policy.arrived]
     order = order[_places(parts.owner[order]) < _ROOM]
-    return parts.owner[order], _within_periods(q, arm.period)[order]
+    return parts.owner[order], _within_periods(q, arm.placing)[order]
 
 
 # What Newton steps from the closed form's rows lead to near singularities, where solutions meet.
@@ -1833,7 +1823,7 @@ def _bounded_joints(arm: _Arm) -> list[tuple[int, float, float, float]]:
     """Moving joints that limits bound."""
     out = []
     for j in arm.moving:
-        low, high, period = arm.lower[j], arm.upper[j], arm.chain.period[j]
+        low, high, period = arm.lower[j], arm.upper[j], arm.period[j]
         if high - low < period or (not period and (low > -inf or high < inf)):
             low, high = max(low, -_OPEN), min(high, _OPEN)
             out.append((j, 0.5 * (low + high), 0.5 * (high - low), period))
@@ -2277,7 +2267,7 @@ def _even_starts(arm: _Arm, low: Array, high: Array, count: int) -> Array:
         root = (1.0 + root) ** (1.0 / (dof + 1))
     steps = (1.0 / root) ** np.arange(1, dof + 1)
     part = (0.5 + np.arange(1, count + 1)[:, None] * steps) % 1.0
-    period = np.array(arm.chain.period)
+    period = np.array(arm.period)
     half = np.where(period > 0.0, 0.5 * period, arm.task.size)
     centre = np.clip(0.0, low + half, np.maximum(high - half, low + half))
     least, most = np.maximum(low, centre - half), np.minimum(high, centre + half)
@@ -2587,7 +2577,7 @@ def _seed_rows(arm: _Arm, seed: ArrayLike, *shapes: tuple[int, ...], name: str =
     if not np.isfinite(values).all():
         place = np.argwhere(~np.isfinite(values))[0].tolist()
         raise ValueError(f"{name}{place} is {values[tuple(place)]}, which is not finite")
-    period = np.array(arm.period)
+    period = np.array(arm.placing)
     far = (np.abs(values) > _FARTHEST) & (period > 0.0)
     turn = np.where(far, period, 1.0)
     return np.where(far, np.fmod(values, turn), values) if far.any() else values
@@ -2960,7 +2950,7 @@ def _branch_numbers(arm: _Arm, q: Array) -> list[int]:
     poses = _forward(arm.chain, q)
     with np.errstate(all="ignore"):
         rows, valid, *_ = arm.branches_batch(poses, q, _held_of(arm, q))
-        gap = np.abs(_within_periods(rows - q[:, None, :], arm.chain.period))
+        gap = np.abs(_within_periods(rows - q[:, None, :], arm.period))
         gap[:, :, list(arm.free)] = 0.0
         distance = np.where(valid, gap.max(axis=2), np.inf)
     distance[np.isnan(distance)] = np.inf
@@ -3154,7 +3144,7 @@ def _preference_costs(
     name, middle, weights = preference
     q = q.copy()
     for j in arm.free:
-        period = arm.chain.period[j]
+        period = arm.period[j]
         if period and not isfinite(arm.upper[j] - arm.lower[j]):
             q[..., j] += period * np.round((middle[j] - q[..., j]) / period)
     q, inside, _ = _place_rows_batch(arm, q, np.tile(middle, (len(q), 1)), limits)
@@ -3587,7 +3577,7 @@ _ARM = _Arm(
     beside=_BESIDE,
     branch_kind="number",
     elbow_end=5,
-    period=(_CHAIN.period[0], _CHAIN.period[1], ),
+    period=(6.283185307179586, 0.0, ),
     around=_rows_around,
     together=None,
     moving=(0, 1, ),

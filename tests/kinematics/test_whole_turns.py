@@ -26,7 +26,6 @@ from ikgen.kinematics.whole_turns import (
     range_of,
 )
 from ikgen.model.dh import DHChain
-from ikgen.runtime.python.arm.chain_kinematics import chain_of
 
 
 def round_elbow(robot: Path) -> None:
@@ -148,9 +147,6 @@ def test_periods_of_several_followers(
     robot.write_text(f'{head}multiplier="{ratios[1]!r}"{tail}')
     dh = read(request(robot)).dh
     assert period_of(dh, 0) == pytest.approx(2.0 * math.pi * period)
-    rows = [(row.driver, row.revolute, row.scale, row.offset.value) for row in dh.rows]
-    chain = chain_of(np.tile(np.eye(4), (len(rows) + 1, 1, 1)), tuple(rows), dh.dof)
-    assert chain.period[0] == pytest.approx(2.0 * math.pi * period)
 
 
 def test_ratios_of_no_whole_numbers_are_refused(tmp_path: Path) -> None:

@@ -19,7 +19,7 @@ def arm(*held: str) -> Arm:
     free = tuple(names.index(name) for name in held)
     parts: dict[str, Any] = {"free": free, "free_joints": held, "free_defaults": (0.5,) * len(held)}
     parts["angle"] = None
-    return cast(Arm, SimpleNamespace(**parts, period=(WHOLE_TURN,) * 3, lower=(0.0,) * 3))
+    return cast(Arm, SimpleNamespace(**parts, placing=(WHOLE_TURN,) * 3, lower=(0.0,) * 3))
 
 
 @pytest.mark.parametrize("free", [0.25, [0.25], (0.25,), np.array([0.25]), {"b": 0.25}])
@@ -66,5 +66,5 @@ def test_turns_that_doubles_cannot_tell_are_left_out_of_seeds() -> None:
     found = seed_rows(arm(), seed, (3,))
     assert found[0] == seed[0]
     np.testing.assert_allclose(found[1:], [0.25, -0.25], atol=1e-8)
-    slides = cast(Arm, SimpleNamespace(period=(0.0,) * 3, lower=(0.0,) * 3))
+    slides = cast(Arm, SimpleNamespace(placing=(0.0,) * 3, lower=(0.0,) * 3))
     np.testing.assert_array_equal(seed_rows(slides, seed, (3,)), seed)

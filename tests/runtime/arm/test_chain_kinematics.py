@@ -57,10 +57,6 @@ def test_no_configurations_have_no_poses(chain: Chain) -> None:
     assert jacobian(chain, np.empty((0, 3))).shape == (0, 6, 3)
 
 
-def test_joints_that_turn(chain: Chain) -> None:
-    assert chain.period == (2 * np.pi, 0.0, 2 * np.pi)
-
-
 def test_wrong_shapes(chain: Chain) -> None:
     for q in (1.0, [0.0, 0.0], np.zeros((2, 4))):
         with pytest.raises(ValueError, match="expected"):

@@ -15,7 +15,7 @@ ARM = SimpleNamespace(
     moving=(0, 1, 2, 3, 5),
     lower=np.array([-1.0, -4.0, 0.2, -INF, -1.0, -INF]),
     upper=np.array([3.0, 4.0, INF, INF, 1.0, 0.5]),
-    chain=SimpleNamespace(period=(WHOLE_TURN, WHOLE_TURN, 0.0, 0.0, WHOLE_TURN, 0.0)),
+    period=(WHOLE_TURN, WHOLE_TURN, 0.0, 0.0, WHOLE_TURN, 0.0),
 )
 """A turning joint with limits, one with more than a turn, a slide bounded below, one without limits, a
 joint that is held, a slide bounded above."""

@@ -28,7 +28,7 @@ def planar(lower: tuple[float, ...] = (-pi,) * 3, upper: tuple[float, ...] = (pi
     policy = SimpleNamespace(limit_tolerance=1e-9)
     return SimpleNamespace(
         chain=chain, task=Plane, policy=policy, lower=lower, upper=upper, moving=(1, 2), free=(0,),
-        angle=None, rounded=False,
+        angle=None, rounded=False, period=(2.0 * pi,) * 3,
     )  # fmt: skip
 
 

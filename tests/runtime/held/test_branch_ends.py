@@ -51,7 +51,7 @@ class Branches:
     @property
     def arm(self) -> Any:
         return SimpleNamespace(
-            chain=SimpleNamespace(period=(0.0,)),
+            period=(0.0,),
             policy=SimpleNamespace(limit_tolerance=self.tolerance),
             rounded=self.rounded,
         )

@@ -27,7 +27,7 @@ ARM = SimpleNamespace(
     moving=(0,),
     lower=np.array([-1.0]),
     upper=np.array([3.0]),
-    chain=SimpleNamespace(period=(WHOLE_TURN,)),
+    period=(WHOLE_TURN,),
     policy=SimpleNamespace(limit_tolerance=1e-9),
     rounded=False,
 )
@@ -71,7 +71,7 @@ def test_the_way_to_a_fold_grows_as_the_root_of_the_distance(where: int) -> None
 
 
 HELD = np.array([0.0, 0.1, 0.3, 0.35, 0.6, 0.7])
-FREE = SimpleNamespace(chain=SimpleNamespace(period=(0.0, 0.0)))
+FREE = SimpleNamespace(period=(0.0, 0.0))
 
 
 def rows_of(*branches: list[Callable[[float], float]], real: Any = None, folds: Any = None) -> Rows:
@@ -228,7 +228,7 @@ def test_a_row_that_comes_to_a_limit_is_inside_and_crosses_it_once(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     exact = SimpleNamespace(
-        moving=(0,), lower=np.array([-1.0]), upper=np.array([1.0]), chain=ARM.chain,
+        moving=(0,), lower=np.array([-1.0]), upper=np.array([1.0]), period=ARM.period,
         policy=SimpleNamespace(limit_tolerance=0.0), rounded=False,
     )  # fmt: skip
     linked = np.ones((1, 1), dtype=bool)

@@ -25,6 +25,7 @@ def arm(kinds: str, lower: tuple[float, ...], upper: tuple[float, ...]) -> Any:
     return SimpleNamespace(
         chain=chain_of(frames, motions, len(kinds)), lower=lower, upper=upper,
         free=tuple(range(len(kinds))), task=SimpleNamespace(entries=((0, 3),)),
+        period=tuple(2.0 * pi if kind == "R" else 0.0 for kind in kinds),
     )  # fmt: skip
 
 

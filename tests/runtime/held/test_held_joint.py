@@ -65,12 +65,14 @@ def test_no_more_rows_are_taken_than_solve_gives(monkeypatch: pytest.MonkeyPatch
 
 
 def test_a_slide_counts_as_far_as_the_lengths_reach() -> None:
-    chain = SimpleNamespace(frames=np.tile(np.eye(4), (3, 1, 1)), period=(0.0, 0.0, WHOLE_TURN))
+    chain = SimpleNamespace(frames=np.tile(np.eye(4), (3, 1, 1)))
     chain.frames[1:, 0, 3] = 0.5, 0.25
     T = np.eye(4)
     T[2, 3] = -2.0
     ends = (-np.inf, -0.4, -1.0), (np.inf, 0.3, 1.0)
-    arm: Any = SimpleNamespace(free=(0,), lower=ends[0], upper=ends[1], chain=chain)
+    arm: Any = SimpleNamespace(
+        free=(0,), lower=ends[0], upper=ends[1], chain=chain, period=(0.0, 0.0, WHOLE_TURN)
+    )
     assert held_range(arm, T, True) == pytest.approx((-3.15, 3.15))
     arm.free = (1,)
     assert held_range(arm, T, True) == held_range(arm, T, False) == (-0.4, 0.3)

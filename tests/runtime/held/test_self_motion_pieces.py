@@ -34,7 +34,7 @@ def tracks_of(*lanes: str, held: Array = HELD) -> Tracks:
 
 
 def joint_of(guarded: bool = True, most: int = 8, **more: Any) -> Any:
-    arm = SimpleNamespace(most=most, rounded=False, chain=SimpleNamespace(period=(0.0,)))
+    arm = SimpleNamespace(most=most, rounded=False, period=(0.0,))
     return SimpleNamespace(
         **{"arm": arm, "guarded": guarded, "margins_tell": guarded, "poses": 1, **more}
     )

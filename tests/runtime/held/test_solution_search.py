@@ -22,7 +22,7 @@ def arm(count: int = 1, **more: Any) -> Any:
         "free": tuple(range(count)),
         "most": 8,
     }
-    return SimpleNamespace(chain=SimpleNamespace(period=(0.0,) * count), **{**fields, **more})
+    return SimpleNamespace(period=(0.0,) * count, **{**fields, **more})
 
 
 def cost_of(monkeypatch: pytest.MonkeyPatch, cost: Any, away: float = 0.0) -> list[Array]:

@@ -10,7 +10,7 @@ import numpy as np
 from ikgen.runtime.python.arrays.angles import WHOLE_TURN
 from ikgen.runtime.python.rows.row_links import linked_rows, origins
 
-ARM: Any = SimpleNamespace(chain=SimpleNamespace(period=(WHOLE_TURN, 0.0)))
+ARM: Any = SimpleNamespace(period=(WHOLE_TURN, 0.0))
 
 
 def test_rows_go_on_as_the_nearest_that_is_nearest_to_them() -> None:

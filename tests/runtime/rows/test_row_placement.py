@@ -28,9 +28,6 @@ from ikgen.runtime.python.rows.row_placement import (
 Array = NDArray[np.float64]
 
 
-_TURNING = tuple((j, True, 1.0, 0.0) for j in range(3))
-
-
 def arm() -> Arm:
     """Three turning joints, a slide, and a held joint that turns."""
     frames = np.tile(np.eye(4), (6, 1, 1))
@@ -48,7 +45,7 @@ def arm() -> Arm:
         branches=lambda T, q0, held: ([], False),
         branches_batch=lambda T, q0, held: (T, T > 0.0, T > 0.0, T > 0.0, T > 0.0),
         beside=np.empty((0, 4, 4)),
-        period=(WHOLE_TURN, WHOLE_TURN, WHOLE_TURN, 0.0, 0.0),
+        period=(WHOLE_TURN, WHOLE_TURN, WHOLE_TURN, 0.0, WHOLE_TURN),
         moving=(0, 1, 2, 3),
         together=None,
         branch_kind="number",
@@ -168,7 +165,7 @@ def test_a_row_far_outside_of_another_limit_is_not_close() -> None:
 
 
 def test_rows_are_apart_where_none_repeats_another() -> None:
-    turning = replace(arm(), chain=chain_of(np.tile(np.eye(4), (4, 1, 1)), _TURNING, 3))
+    turning = replace(arm(), period=(WHOLE_TURN,) * 3)
     q = np.array([[0.1, 0.2, pi], [0.1, 0.2, 0.5], [0.3, 0.2, -pi]])
     assert apart(turning, q) and apart(turning, q[:1]) and apart(turning, q[:0])
     for repeated in (q[0] + 1e-7, q[0] - 2.0 * pi, q[2] + np.array([-0.2, 4.0 * pi, 0.0])):

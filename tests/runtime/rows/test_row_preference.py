@@ -35,7 +35,7 @@ def arm() -> Arm:
         lower=LOWER, upper=UPPER, free=(5,), free_joints=("held",), free_defaults=(0.0,), most=8,
         branches=lambda T, q0, held: ([], False),
         branches_batch=lambda T, q0, held: (T, T > 0.0, T > 0.0, T > 0.0, T > 0.0),
-        beside=np.empty((0, 4, 4)), period=(WHOLE_TURN, WHOLE_TURN, WHOLE_TURN, 0.0, WHOLE_TURN, 0.0),
+        beside=np.empty((0, 4, 4)), period=(*(WHOLE_TURN,) * 3, 0.0, WHOLE_TURN, WHOLE_TURN),
         moving=(0, 1, 2, 3, 4), together=None, branch_kind="number", elbow_end=0, around=None,
     )  # fmt: skip
 

@@ -17,7 +17,7 @@ from ikgen.runtime.python.singular.fold_pair import Reduced
 
 Array = NDArray[np.float64]
 POLICY = SimpleNamespace(arrived=0.5e-9, fold_reach=10.0)
-LINE: Any = SimpleNamespace(moving=(0,), policy=POLICY, period=(WHOLE_TURN,))
+LINE: Any = SimpleNamespace(moving=(0,), policy=POLICY, placing=(WHOLE_TURN,))
 
 
 def give(monkeypatch: pytest.MonkeyPatch, sample: Callable[[Reduced], Reduced]) -> None:
@@ -193,7 +193,7 @@ def test_two_solutions_are_found_that_the_cubic_between_others_hides(
         moving=(0,),
         policy=POLICY,
         period=(WHOLE_TURN,),
-        chain=SimpleNamespace(period=(WHOLE_TURN,)),
+        placing=(WHOLE_TURN,),
     )
     whose, found = look_between(line, q, to, np.zeros((1, 4, 4)))
     assert not whose.any()

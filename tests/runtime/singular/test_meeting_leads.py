@@ -82,9 +82,7 @@ def test_continua_are_followed_from_where_own_rows_near_singularities_end(
 
 
 def test_a_row_that_a_pose_beside_led_to_once_more_is_left_out() -> None:
-    arm: Any = SimpleNamespace(
-        policy=POLICY, chain=SimpleNamespace(period=(WHOLE_TURN,)), beside=(0,)
-    )
+    arm: Any = SimpleNamespace(policy=POLICY, period=(WHOLE_TURN,), beside=(0,))
     given = leads_of_rows([0.5, 1.5, 0.5 + 2.0 * pi, 2.5], [0, 0, 1, 2], [1.0, 2.0, 3.0, 4.0])
     found = rows_nearby(arm, given)
     assert found.owner.tolist() == [0, 1, 3] and found.sigma.tolist() == [1.0, 2.0, 4.0]
@@ -93,8 +91,11 @@ def test_a_row_that_a_pose_beside_led_to_once_more_is_left_out() -> None:
 
 def plane_arm(chain: Any, policy: Any) -> Any:
     """Of a chain whose joints all move, with what `repeats` reads of its policy."""
-    moving = tuple(range(len(chain.period)))
-    return SimpleNamespace(policy=policy, chain=chain, task=Plane, moving=moving, angle=None)
+    moving = tuple(range(chain.dof))
+    period = tuple(WHOLE_TURN if turning else 0.0 for _, turning, _, _ in chain.motions)
+    return SimpleNamespace(
+        policy=policy, chain=chain, period=period, task=Plane, moving=moving, angle=None
+    )
 
 
 def test_singular_rows_are_one_where_the_pose_is_theirs_between_them_too() -> None:

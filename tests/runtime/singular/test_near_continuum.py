@@ -31,8 +31,7 @@ from ikgen.runtime.python.singular.near_continuum import (
 
 Array = NDArray[np.float64]
 POLICY = SimpleNamespace(arrived=0.5e-9, try_step=np.pi / 8, fold_reach=10.0)
-ANGLE: Any = SimpleNamespace(period=(WHOLE_TURN,))
-LINE: Any = SimpleNamespace(moving=(0,), policy=POLICY, period=(WHOLE_TURN,), chain=ANGLE)
+LINE: Any = SimpleNamespace(moving=(0,), policy=POLICY, period=(WHOLE_TURN,), placing=(WHOLE_TURN,))
 
 
 @pytest.fixture(scope="module")
@@ -191,9 +190,7 @@ def test_a_curve_is_back_where_it_was_in_the_same_sense() -> None:
 
 
 def test_a_curve_is_back_along_its_own_direction_alone() -> None:
-    pair: Any = SimpleNamespace(
-        moving=(0, 1), policy=POLICY, chain=SimpleNamespace(period=(WHOLE_TURN, WHOLE_TURN))
-    )
+    pair: Any = SimpleNamespace(moving=(0, 1), policy=POLICY, period=(WHOLE_TURN, WHOLE_TURN))
     none = np.zeros(1)
 
     def sample(x: float, y: float, way: tuple[float, float] = (0.6, 0.8)) -> Reduced:

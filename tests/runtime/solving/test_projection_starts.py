@@ -14,7 +14,7 @@ from ikgen.runtime.python.solving.projection import _clipped_step, _even_starts
 
 def arm(turns: list[bool], size: float = 2.0) -> Any:
     return SimpleNamespace(
-        chain=SimpleNamespace(period=tuple(2 * pi * one for one in turns)),
+        period=tuple(2 * pi * one for one in turns),
         task=SimpleNamespace(size=size),
     )
 

@@ -87,7 +87,7 @@ def seed_rows(arm: Arm, seed: ArrayLike, *shapes: tuple[int, ...], name: str = "
     if not np.isfinite(values).all():
         place = np.argwhere(~np.isfinite(values))[0].tolist()
         raise ValueError(f"{name}{place} is {values[tuple(place)]}, which is not finite")
-    period = np.array(arm.period)
+    period = np.array(arm.placing)
     far = (np.abs(values) > _FARTHEST) & (period > 0.0)
     turn = np.where(far, period, 1.0)
     return np.where(far, np.fmod(values, turn), values) if far.any() else values

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-from math import pi
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -37,8 +35,7 @@ class Chain:
     (n,): of `M(v_i) F_i`, the first `F_0 M(v_1) F_1`, the entries in one line are `cos(v_i) parts[i, 0]
     + sin(v_i) parts[i, 1] + parts[i, 2]`, with v_i in place of the cosine where i is one of `slides`.
     `links` (n, 3, 16): `parts` of `M(v_1) F_1` without F_0.
-    `drive` (n, dof): the derivatives of v by q, None where they are 1. `period` (dof): how far apart (rad)
-    values are that are the same configuration; 0 where none are.
+    `drive` (n, dof): the derivatives of v by q, None where they are 1.
     """
 
     frames: Array
@@ -50,7 +47,7 @@ class Chain:
     offset: Array
     slides: tuple[int, ...]
     drive: Array | None
-    period: tuple[float, ...]
+    dof: int
 
 
 def chain_of(frames: Array, motions: tuple[Motion, ...], dof: int) -> Chain:
@@ -72,7 +69,6 @@ def chain_of(frames: Array, motions: tuple[Motion, ...], dof: int) -> Chain:
     slides = tuple(i for i, m in enumerate(motions) if not m[1])
     drive = scale[:, None] * (joint[:, None] == np.arange(dof))
     alike = np.array_equal(drive, np.eye(dof))
-    period = tuple(_period([m for m in motions if m[0] == j]) for j in range(dof))
     return Chain(
         frames,
         motions,
@@ -83,23 +79,8 @@ def chain_of(frames: Array, motions: tuple[Motion, ...], dof: int) -> Chain:
         offset,
         slides,
         None if alike else drive,
-        period,
+        dof,
     )
-
-
-def _period(motions: Sequence[Motion]) -> float:
-    """How far apart (rad) values of a joint are that are the same configuration: at most a turn of it,
-    unless all that it moves turns alike; 0 where none are."""
-    speeds = np.abs([m[2] for m in motions])
-    if not motions or not all(m[1] for m in motions):
-        return 0.0
-    least = float(speeds.min())
-    alike = bool((speeds - least < 1e-12 * least).all())
-    for n in range(1, max(int(least + 1e-12), alike) + 1):
-        turns = speeds * n / least
-        if (np.abs(turns - np.round(turns)) < 1e-12 * turns).all():
-            return 2.0 * pi * n / least
-    return 0.0
 
 
 def link_motions(chain: Chain, parts: Array, q: Array) -> Array:
@@ -116,7 +97,7 @@ def link_motions(chain: Chain, parts: Array, q: Array) -> Array:
 
 def in_line(chain: Chain, q: ArrayLike) -> tuple[tuple[int, ...], Array]:
     """The shape of what q (..., dof) are in front, and q (k, dof)."""
-    values, dof = real_array(q, "q"), len(chain.period)
+    values, dof = real_array(q, "q"), chain.dof
     if values.ndim < 1 or values.shape[-1] != dof:
         raise ValueError(f"q has shape {values.shape}, expected (..., {dof})")
     return values.shape[:-1], values.reshape(-1, dof)

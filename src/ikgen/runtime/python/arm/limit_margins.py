@@ -19,7 +19,7 @@ def bounded_joints(arm: Arm) -> list[tuple[int, float, float, float]]:
     """Moving joints that limits bound: index, middle and half of their range, and their period, or 0."""
     out = []
     for j in arm.moving:
-        low, high, period = arm.lower[j], arm.upper[j], arm.chain.period[j]
+        low, high, period = arm.lower[j], arm.upper[j], arm.period[j]
         if high - low < period or (not period and (low > -inf or high < inf)):
             low, high = max(low, -_OPEN), min(high, _OPEN)
             out.append((j, 0.5 * (low + high), 0.5 * (high - low), period))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Protocol
 
 from ikgen.runtime.python.arm.chain_kinematics import Chain
@@ -66,8 +67,9 @@ class Arm:
     most. `branches(T, q0, held)`: the closed form's rows for a pose, values of joints that it leaves
     free, values of held joints, each with whether it is rough, and whether the pose left a joint free;
     None for an elimination; `branches_batch`: in arrays. `beside`
-    (n, 4, 4): motions of the tool to poses that are solved as well. `period`: the
-    chain's, 0 of held joints; `moving`: indices of those not held.
+    (n, 4, 4): motions of the tool to poses that are solved as well. `period`: how far
+    apart (rad) values of a joint are that are the same configuration, 0 where none are; `moving`: indices
+    of joints that are not held.
     `together`: `refine_together` where the closed form is of another geometry than the file's, and all rows
     are rough; `solved`: the chain of that geometry then. `around`: `rows_around` where there is a closed
     form.
@@ -95,6 +97,11 @@ class Arm:
     solved: Chain | None = None
     angle: HeldAngle | None = None
     freedoms: int = 6
+
+    @cached_property
+    def placing(self) -> Row:
+        """`period`, 0 of held joints, whose values are as given."""
+        return tuple(0.0 if j in self.free else turn for j, turn in enumerate(self.period))
 
     @property
     def rank(self) -> int:

@@ -32,3 +32,8 @@ class Arm:
     elbow_end: int
     branches_batch: BranchesBatch | None
     angle: HeldAngle | None = None
+
+    @property
+    def placing(self) -> Row:
+        """`period`, 0 of held joints."""
+        return tuple(0.0 if j in self.free else turn for j, turn in enumerate(self.period))

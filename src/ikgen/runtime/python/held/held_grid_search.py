@@ -111,7 +111,7 @@ def _grid(
     axes, steps = [], []
     for j in arm.free:
         low, high = arm.lower[j], arm.upper[j]
-        half = 0.5 * arm.chain.period[j]
+        half = 0.5 * arm.period[j]
         if half and not (limits and high - low < inf):
             low, high = -half, half
         low, high = (min(max(x, low), high) for x in slide_range(arm, T, j))

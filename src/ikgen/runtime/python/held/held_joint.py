@@ -108,12 +108,12 @@ def held_range(arm: Arm, T: Array, limits: bool) -> tuple[float, float]:
         return -pi, pi
     (j,) = arm.free
     low, high = arm.lower[j], arm.upper[j]
-    if half := 0.5 * arm.chain.period[j]:
+    if half := 0.5 * arm.period[j]:
         return (low, high) if limits and high - low < inf else (-half, half)
     lengths = np.linalg.norm(arm.chain.frames[:, :3, 3], axis=1).sum()
     slides = sum(
         max(abs(a), abs(b))
-        for a, b, turns in zip(arm.lower, arm.upper, arm.chain.period)
+        for a, b, turns in zip(arm.lower, arm.upper, arm.period)
         if not turns and b - a < inf
     )
     far = float(np.linalg.norm(T[:3, 3]) + lengths + slides)

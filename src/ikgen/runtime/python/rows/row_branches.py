@@ -68,7 +68,7 @@ def _branch_numbers(arm: Arm, q: Array) -> list[int]:
     poses = forward(arm.chain, q)
     with np.errstate(all="ignore"):
         rows, valid, *_ = arm.branches_batch(poses, q, held_of(arm, q))
-        gap = np.abs(within_periods(rows - q[:, None, :], arm.chain.period))
+        gap = np.abs(within_periods(rows - q[:, None, :], arm.period))
         gap[:, :, list(arm.free)] = 0.0
         distance = np.where(valid, gap.max(axis=2), np.inf)
     distance[np.isnan(distance)] = np.inf

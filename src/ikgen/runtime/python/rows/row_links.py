@@ -17,7 +17,7 @@ _NEAR = 0.3  # rad or m that a row of a branch may be from its own before
 
 def differences(arm: Arm, a: Array, b: Array) -> Array:
     """b - a (..., dof), of turning joints on the shortest way."""
-    return within_periods(b - a, arm.chain.period)
+    return within_periods(b - a, arm.period)
 
 
 def slide_scale(values: Array) -> Array:

@@ -30,7 +30,7 @@ __all__ = [
 def is_new(arm: Arm, row: Row, kept: Sequence[Found]) -> bool:
     """Whether the row differs from all kept ones, whole turns aside; long slides count relative to their
     length."""
-    near, period = arm.policy.coincident, arm.chain.period[::-1]
+    near, period = arm.policy.coincident, arm.period[::-1]
     for other, _ in kept:
         for a, b, turn in zip(reversed(row), reversed(other), period):  # the last ones differ most
             gap = abs(a - b)
@@ -45,7 +45,7 @@ def is_new(arm: Arm, row: Row, kept: Sequence[Found]) -> bool:
 
 def same_rows(arm: Arm, a: Array, b: Array) -> Flags:
     """Which rows a (k, dof) are the rows b (k, dof), by what `is_new` goes by."""
-    bound = np.where(np.array(arm.chain.period) > 0.0, 1.0, slide_scale(a))
+    bound = np.where(np.array(arm.period) > 0.0, 1.0, slide_scale(a))
     gap = np.abs(differences(arm, a, b))
     return np.asarray((gap <= arm.policy.coincident * bound).all(axis=1))
 
@@ -53,9 +53,9 @@ def same_rows(arm: Arm, a: Array, b: Array) -> Flags:
 def apart(arm: Arm, q: Array) -> bool:
     """Whether all rows (k, dof) of revolute joints differ, whole turns aside; False also where slides have
     to tell. A number of each, whole turns of which are whole turns of the joints, tells most of them."""
-    if not all(arm.chain.period):
+    if not all(arm.period):
         return False
-    period = np.array(arm.chain.period)
+    period = np.array(arm.period)
     weight = np.arange(1.0, q.shape[1] + 1.0) * (WHOLE_TURN / period)
     turns = sorted((q @ weight % WHOLE_TURN).tolist())
     enough = 2.0 * arm.policy.coincident * float(weight.sum())
@@ -77,8 +77,8 @@ def distinct(arm: Arm, q: Array, valid: Flags) -> Flags:
     for j in reversed(range(q.shape[2])):  # the last joints differ between most rows
         value = q[:, :, j].T
         gap = np.abs(value[later] - value[earlier])
-        if arm.chain.period[j]:
-            same &= (gap <= near) | (np.abs(gap - arm.chain.period[j]) <= near)
+        if arm.period[j]:
+            same &= (gap <= near) | (np.abs(gap - arm.period[j]) <= near)
         else:
             same &= gap <= near * slide_scale(value[later])
         if not same.any():
@@ -99,7 +99,7 @@ def rows_at_limits(
 ) -> tuple[list[Found], list[tuple[Found, Row]]]:
     """`place_rows`, and of the dropped rows those hardly outside: as they were, and on the limits."""
     inside, close = [], []
-    least, most = _one_turn(arm.lower, arm.upper, arm.period, limits)
+    least, most = _one_turn(arm.lower, arm.upper, arm.placing, limits)
     for row, flag in rows:
         if near is None and all(map(lt, least, row)) and all(map(lt, row, most)):
             inside.append((row, flag))
@@ -125,7 +125,7 @@ def _place(arm: Arm, row: Row, near: Row | None, limits: bool) -> tuple[Row | No
     """The row on its turns, None where it is far outside; and whether it had to be moved to limits by more
     than round-off."""
     out, beyond = [], False
-    for j, (q, turn, low, high) in enumerate(zip(row, arm.period, arm.lower, arm.upper)):
+    for j, (q, turn, low, high) in enumerate(zip(row, arm.placing, arm.lower, arm.upper)):
         shift = 0.0
         if turn:
             if q <= -0.5 * turn:
@@ -183,7 +183,7 @@ def place_rows_batch(
     """Rows (N, M, dof) on the right turns, in place, which of them lie inside the limits, and which may be
     hardly outside."""
     inside, close, reach = (*np.ones((2, *q.shape[:2]), dtype=bool), arm.policy.limit_reach)
-    for j, (turn, low, high) in enumerate(zip(arm.period, arm.lower, arm.upper)):
+    for j, (turn, low, high) in enumerate(zip(arm.placing, arm.lower, arm.upper)):
         value = q[..., j]
         least, most = low - arm.policy.limit_tolerance, high + arm.policy.limit_tolerance
         if turn:

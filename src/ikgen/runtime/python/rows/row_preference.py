@@ -51,7 +51,7 @@ def preference_costs(
     name, middle, weights = preference
     q = q.copy()
     for j in arm.free:
-        period = arm.chain.period[j]
+        period = arm.period[j]
         if period and not isfinite(arm.upper[j] - arm.lower[j]):
             q[..., j] += period * np.round((middle[j] - q[..., j]) / period)
     q, inside, _ = place_rows_batch(arm, q, np.tile(middle, (len(q), 1)), limits)

@@ -191,4 +191,4 @@ def _kept(arm: Arm, parts: Parts) -> tuple[Index, Array]:
     order = np.lexsort((parts.place, parts.owner))
     order = order[np.abs(left[order]) < arm.policy.arrived]
     order = order[places(parts.owner[order]) < _ROOM]
-    return parts.owner[order], within_periods(q, arm.period)[order]
+    return parts.owner[order], within_periods(q, arm.placing)[order]

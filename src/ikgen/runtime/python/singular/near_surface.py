@@ -78,7 +78,7 @@ def _places(arm: Arm, q: Array, still: Array, pose: Index) -> tuple[Index, Array
     of a pose (k,) others all around, by turns of the two joints that the directions `still` (k, 2, n) in
     the surface move most."""
     moving = np.array(arm.moving)
-    turning = np.flatnonzero(np.asarray(arm.chain.period)[moving])
+    turning = np.flatnonzero(np.asarray(arm.period)[moving])
     pairs = np.array(list(combinations(turning.tolist(), 2)), dtype=np.intp).reshape(-1, 2)
     rows = np.where(places(pose) < _WIDE, _PLACES**2 if len(pairs) else 1, 1)
     owner = np.repeat(np.arange(len(q)), rows)
@@ -89,7 +89,7 @@ def _places(arm: Arm, q: Array, still: Array, pose: Index) -> tuple[Index, Array
         turned = moving[pairs[area.argmax(axis=1)]][owner]
         steps = np.stack(np.divmod(places(owner), _PLACES), axis=1)
         out[np.arange(len(out))[:, None], turned] += (
-            np.asarray(arm.chain.period)[turned] / _PLACES * steps
+            np.asarray(arm.period)[turned] / _PLACES * steps
         )
     return owner, out
 

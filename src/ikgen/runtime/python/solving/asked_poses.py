@@ -46,7 +46,7 @@ class Asked:
         (n,); held ones as they are."""
         q = np.zeros((len(self.T), len(arm.lower))) if self.near is None else self.near.copy()
         if turn is not None:
-            q[:, np.array(arm.chain.period) > 0.0] += turn[:, None]
+            q[:, np.array(arm.period) > 0.0] += turn[:, None]
         q[:, list(arm.free)] = self.held[:, : len(arm.free)]
         return q
 

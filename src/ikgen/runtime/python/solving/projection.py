@@ -141,7 +141,7 @@ def _even_starts(arm: Arm, low: Array, high: Array, count: int) -> Array:
         root = (1.0 + root) ** (1.0 / (dof + 1))
     steps = (1.0 / root) ** np.arange(1, dof + 1)
     part = (0.5 + np.arange(1, count + 1)[:, None] * steps) % 1.0
-    period = np.array(arm.chain.period)
+    period = np.array(arm.period)
     half = np.where(period > 0.0, 0.5 * period, arm.task.size)
     centre = np.clip(0.0, low + half, np.maximum(high - half, low + half))
     least, most = np.maximum(low, centre - half), np.minimum(high, centre + half)
