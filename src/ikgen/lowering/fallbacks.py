@@ -49,14 +49,14 @@ def choose_form(
 ) -> tuple[Expr, ...]:
     """The first form whose divisor does not vanish; the seed's value if there is none.
 
-    Where rows are refined, a small divisor gives but a rough value: all are tried for a large one
-    first.
+    A small divisor gives but a rough value, and the last form's may be small where the first one's branches
+    meet: all are tried for a large one first.
     """
     g = work.g
     divisors = [form.divisor for form in forms]
     first = [_well_conditioned(work, form) for form in forms[:-1] if not _lost(work, form)]
     last = forms[-1].divisor
-    if len(forms) > 1 and last.clear is not None and work.model_error > ROUNDED:
+    if len(forms) > 1 and last.clear is not None:
         wide = Divisor(last.value, last.clear, last.clear)
         forms = [*first, replace(forms[-1], divisor=wide), *forms]
     else:
