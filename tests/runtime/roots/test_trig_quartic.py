@@ -145,6 +145,21 @@ def test_four_in_the_same_place_leave_one_whatever_rounding_makes_of_them(tmp_pa
             assert np.hypot(c - np.cos(at), s - np.sin(at)) < 5e-3
 
 
+def test_two_double_roots_next_to_each_other_leave_some(tmp_path: Path) -> None:
+    """The resolvent's root is nearly a triple one, at an end of its range."""
+    rng = np.random.default_rng(8)
+    t = 0.5 * np.pi * rng.integers(-2, 3, 4000) + 10.0 ** rng.uniform(-7.0, -4.0, 4000)
+    h = 10.0 ** rng.uniform(-7.0, -4.0, 4000)
+    K = of_pairs(*(np.stack([t - h, t + h], axis=1),) * 2)
+    K += rng.uniform(-1e-16, 1e-16, K.shape)
+    program = compiled_header(MAIN, tmp_path)
+    for k, at, line in zip(K, t, feed(program, K.ravel()), strict=True):
+        for found in (trig_quartic(*k)[1], np.reshape(line[1:], (-1, 2))):
+            assert len(found)
+            for c, s in found:
+                assert np.hypot(c - np.cos(at), s - np.sin(at)) < 5e-3
+
+
 def test_degenerate() -> None:
     assert trig_quartic(0.0, 0.0, 0.0, 0.0, 0.0) == (-1, [])
     assert trig_quartic(1e-15, 0.0, 1e-16, 0.0, 0.0)[0] == -1

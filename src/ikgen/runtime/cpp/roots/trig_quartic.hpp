@@ -18,6 +18,7 @@ struct TrigRoots {
 
 namespace tq {
 
+constexpr double kFlat = 1e-14;  // of what a slope is the sum of: less is round-off, as at a triple root
 constexpr double kChord = 1e-3;  // half width from which a line's chord tells its roots well
 
 struct Coefficients {
@@ -51,10 +52,11 @@ inline Span resolvent(double a, double pp, double qq) noexcept {
     if (left || right) turned = right && !(left && g2 <= -g1);
   }
   const double c0 = 2.0 * (turned ? qq : pp), c2 = (turned ? -a : a) + 3.0, c1 = 2.0 * (c2 - 2.0) + pp + qq;
+  const double flat = kFlat * (4.0 + std::abs(a) + pp + qq);
   double u = 0.0;  // from that end
   for (int i = 0; i < 60; ++i) {
     const double slope = c1 - (2.0 * c2 - 3.0 * u) * u, step = (((c2 - u) * u - c1) * u + c0) / slope;
-    if (!(slope > 0.0 && step > 4e-16 * u)) break;
+    if (!(slope > flat && step > 4e-16 * u)) break;
     u = std::min(u + step, 2.0);
   }
   return turned ? Span{2.0 - u, u} : Span{u, 2.0 - u};

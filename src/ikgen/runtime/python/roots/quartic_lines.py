@@ -23,6 +23,7 @@ __all__ = [
     "quartic_values",
 ]
 
+_FLAT = 1e-14  # of what a slope is the sum of: less is round-off, as at a triple root
 _Value = TypeVar("_Value", float, Array)
 Coefficients = tuple[_Value, _Value, _Value, _Value, _Value]
 Line = tuple[_Value, _Value, _Value]
@@ -102,10 +103,11 @@ def _resolvent(a: _Value, pp: _Value, qq: _Value, on: Arithmetic[_Value]) -> tup
     turned = pick(left, right & (g2 > -g1), right | (g(on.clip(a / 3.0, -1.0, 1.0)) > 0.0))
     c0, c2 = 2.0 * pick(turned, qq, pp), pick(turned, -a, a) + 3.0
     c1 = 2.0 * (c2 - 2.0) + pp + qq
+    flat = _FLAT * (4.0 + abs(a) + pp + qq)
     u = 0.0 * a  # from that end
     for _ in range(60):
         slope = c1 - (2.0 * c2 - 3.0 * u) * u
-        step = (((c2 - u) * u - c1) * u + c0) / pick(slope > 0.0, slope, math.inf)
+        step = (((c2 - u) * u - c1) * u + c0) / pick(slope > flat, slope, math.inf)
         done = step <= 4e-16 * u
         u = pick(done, u, on.clip(u + step, 0.0, 2.0))
         if on.every(done):
