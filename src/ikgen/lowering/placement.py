@@ -122,6 +122,9 @@ class Placement:
         self.note_fold(self.g.square(slope), natural_size(slope) ** 2)
         before = () if self.double is None else (self.double,)
         self.double = either(self.g, (*before, *self.folds[folds:]))
+        if self._tolerances.fold:  # of the two that meet the routine gives one
+            self.doubts.append(self.close[-1])
+            self.place(self.doubts[-1])
         self._settle(atoms, (equation,))
 
     def note_divisors(self, divisors: Sequence[Divisor]) -> None:
