@@ -1491,6 +1491,9 @@ def _kept(arm: _Arm, parts: _Parts) -> tuple[_Index, Array]:
 
 _SKEW = 2.0  # of the way to the other solution of two: farther there may be more
 _meeting_rows_BESIDE = 0.1  # rad or m: farther apart closed forms have them all
+_CONTINUUM = (
+    1e-10  # smallest singular value that what takes a pose to 1e-9 all along leaves at most
+)
 
 
 class _Starts(NamedTuple):
@@ -1551,8 +1554,9 @@ def _leads_of(arm: _Arm, starts: _Starts, known: _Flags, near: bool = False) -> 
     """What starts lead to."""
     broken = starts.marked & (starts.source >= 0)
     if broken.any():
-        error = _ends_of(arm, starts.q[broken], starts.T[broken]).error
-        broken[broken] = error >= arm.policy.arrived
+        led = _ends_of(arm, starts.q[broken], starts.T[broken])
+        lost = (led.error >= arm.policy.exact) | _collapsed(arm, starts.pose[broken], led)
+        broken[broken] = lost
     nowhere = np.full(len(starts.q), np.inf)
     ends = _Ends(starts.q.copy(), nowhere, nowhere.copy())
     _run(arm, starts, ends, ~broken)
@@ -1567,6 +1571,19 @@ def _leads_of(arm: _Arm, starts: _Starts, known: _Flags, near: bool = False) -> 
     _run(arm, starts, ends, broken & ~around)
     starts = starts._replace(marked=starts.marked & (around | ~broken))
     return _Leads(starts, ends, _joined(one, other), around | (on & lie))
+
+
+def _collapsed(arm: _Arm, pose: _Index, led: _Ends) -> _Flags:
+    """To which of the ends (k,) of marked starts another of their `pose` (k,) has come as well, which is
+    alone there."""
+    a, b = np.triu_indices(len(pose), 1)
+    alone = (led.error < arm.policy.arrived) & (led.sigma > _CONTINUUM)
+    some = (pose[a] == pose[b]) & alone[a] & alone[b]
+    a, b = a[some], b[some]
+    same = np.abs(_differences(arm, led.q[a], led.q[b])).max(axis=1) < arm.policy.alike
+    out = np.zeros(len(pose), dtype=bool)
+    out[a[same]] = out[b[same]] = True
+    return out
 
 
 def _run(arm: _Arm, starts: _Starts, ends: _Ends, some: _Flags) -> None:

@@ -81,6 +81,46 @@ def test_continua_are_followed_from_where_own_rows_near_singularities_end(
     assert len(seen) == 1 and not plain.known.any() and not len(plain.around.owner)
 
 
+@pytest.mark.parametrize(
+    ("ends", "sigma", "error", "lost"),
+    [
+        ((7.0, 7.0, 5.0), 1e-6, 0.0, [True, True, False]),
+        ((7.0, 7.0 + 2.0 * pi, 5.0), 1e-6, 0.0, [True, True, False]),
+        ((7.0, 6.0, 5.0), 1e-6, 0.0, [False] * 3),
+        ((7.0, 7.0, 5.0), 1e-12, 0.0, [False] * 3),  # the pose is theirs all along
+        ((7.0, 7.0, 5.0), 1e-6, 2e-10, [True] * 3),  # none is right to round-off
+    ],
+)
+def test_marked_rows_that_come_to_one_solution_are_followed(
+    ends: tuple[float, ...],
+    sigma: float,
+    error: float,
+    lost: list[bool],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Where the arm is what was solved others are its own."""
+    to = np.array(ends)[:, None]
+
+    def led(arm: Any, q: Array, T: Array) -> Ends:
+        some = q[:, 0].astype(int)
+        return Ends(to[some], np.full(len(q), error), np.full(len(q), sigma))
+
+    def around(arm: Any, q: Array, T: Array, lie: Any) -> Any:
+        return np.ones(len(q), dtype=bool), np.arange(len(q)), q, np.full(len(q), sigma)
+
+    monkeypatch.setattr(meeting_rows, "ends_of", led)
+    starts = Starts(
+        np.arange(3.0)[:, None], np.zeros((3, 4, 4)), np.zeros(3, np.intp), np.ones(3, dtype=bool),
+        np.zeros(3, dtype=np.int64), np.arange(3),
+    )  # fmt: skip
+    arm: Any = SimpleNamespace(policy=POLICY, rounded=False, around=around, period=(WHOLE_TURN,))
+    found = leads_of(arm, starts, np.zeros((1, 3), dtype=bool))
+    assert found.known.tolist() == lost
+    other = starts._replace(pose=np.array([0, 1, 1]))
+    known = leads_of(arm, other, np.zeros((2, 3), dtype=bool)).known
+    assert not known.any() or error > 0.0
+
+
 def test_a_row_that_a_pose_beside_led_to_once_more_is_left_out() -> None:
     arm: Any = SimpleNamespace(policy=POLICY, period=(WHOLE_TURN,), beside=(0,))
     given = leads_of_rows([0.5, 1.5, 0.5 + 2.0 * pi, 2.5], [0, 0, 1, 2], [1.0, 2.0, 3.0, 4.0])
@@ -194,7 +234,7 @@ def test_marked_rows_that_are_not_the_arms_own_are_followed_once_for_each_branch
         np.array([-1, 0, 1, 1, 0, 0]), np.array([0, 0, 0, 1, 2, 3]),
     )  # fmt: skip
     known = np.zeros((1, 4), dtype=bool)
-    arm: Any = SimpleNamespace(policy=POLICY, rounded=False, around=around)
+    arm: Any = SimpleNamespace(policy=POLICY, rounded=False, around=around, period=(0.0,))
     found = leads_of(arm, starts, known)
     assert seen == [
         [1.0],

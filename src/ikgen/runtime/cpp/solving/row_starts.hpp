@@ -126,6 +126,8 @@ template <class Arm> struct RowStarts {
   using Rows = typename Arm::template Rows<1>;
   using Start = RowStart<Arm>;
 
+  static constexpr double kContinuum = 1e-10;  // smallest singular value that what takes a pose to 1e-9 all along leaves at most
+
   int count = 0;
   bool doubt = false, traced[Arm::kLanes] = {};  // doubt: whether rows of the pose itself may have others near them
   typename NearContinuum<Arm>::Passed passed;
@@ -185,12 +187,21 @@ template <class Arm> struct RowStarts {
     }
   }
 
+  // Whether steps from a marked lane led to where those from another did, to a solution that is alone there: the direction
+  // that they began with is lost, and the solution that one of them was near may lie far away.
+  bool collapsed(const Start& one) const noexcept {
+    if (SingularValue<Arm>::below(one.q, kContinuum)) return false;
+    return std::any_of(all.begin(), all.begin() + count, [&one](const Start& other) noexcept {
+      return other.marked && Pair::within(Policy::kAlike, one.q, other.q);
+    });
+  }
+
   bool any_traced() const noexcept { return std::find(std::begin(traced), std::end(traced), true) != std::end(traced); }
 
   // end: what steps in lanes led to.
   void take(Start start, const LaneEnd<Arm>& end, bool beside, const Aim& aim, Places& out) noexcept {
     if (!(Arm::kRounded && start.marked)) start.refine(aim, end);
-    if (start.marked && (Arm::kRounded || !(start.error < Policy::kArrived))) {
+    if (start.marked && (Arm::kRounded || !(start.error < Policy::kExact) || collapsed(start))) {
       if (!traced[start.lane]) traced[start.lane] = start.add_around(aim, passed, out);
       if (traced[start.lane]) return;
       start.marked = false;

@@ -35,6 +35,9 @@ __all__ = [
 
 _SKEW = 2.0  # of the way to the other solution of two: farther there may be more
 _BESIDE = 0.1  # rad or m: farther apart closed forms have them all
+_CONTINUUM = (
+    1e-10  # smallest singular value that what takes a pose to 1e-9 all along leaves at most
+)
 
 
 class Starts(NamedTuple):
@@ -98,8 +101,9 @@ def leads_of(arm: Arm, starts: Starts, known: Flags, near: bool = False) -> Lead
     rows may lie on near singularities are followed as well."""
     broken = starts.marked & (starts.source >= 0)
     if not arm.rounded and broken.any():
-        error = ends_of(arm, starts.q[broken], starts.T[broken]).error
-        broken[broken] = error >= arm.policy.arrived
+        led = ends_of(arm, starts.q[broken], starts.T[broken])
+        lost = (led.error >= arm.policy.exact) | _collapsed(arm, starts.pose[broken], led)
+        broken[broken] = lost
     nowhere = np.full(len(starts.q), np.inf)
     ends = Ends(starts.q.copy(), nowhere, nowhere.copy())
     _run(arm, starts, ends, ~broken)
@@ -114,6 +118,20 @@ def leads_of(arm: Arm, starts: Starts, known: Flags, near: bool = False) -> Lead
     _run(arm, starts, ends, broken & ~around)
     starts = starts._replace(marked=starts.marked & (around | ~broken))
     return Leads(starts, ends, joined(one, other), around | (on & lie))
+
+
+def _collapsed(arm: Arm, pose: Index, led: Ends) -> Flags:
+    """To which of the ends (k,) of marked starts another of their `pose` (k,) has come as well, which is
+    alone there: the direction that they began with is lost, and the solution that one of them was near may
+    lie far away."""
+    a, b = np.triu_indices(len(pose), 1)
+    alone = (led.error < arm.policy.arrived) & (led.sigma > _CONTINUUM)
+    some = (pose[a] == pose[b]) & alone[a] & alone[b]
+    a, b = a[some], b[some]
+    same = np.abs(differences(arm, led.q[a], led.q[b])).max(axis=1) < arm.policy.alike
+    out = np.zeros(len(pose), dtype=bool)
+    out[a[same]] = out[b[same]] = True
+    return out
 
 
 def _run(arm: Arm, starts: Starts, ends: Ends, some: Flags) -> None:

@@ -1,0 +1,67 @@
+"""Solutions beside which a direction of the closed form is lost, or two of its branches are one."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from benchmarks.agreement import arm_of, runner_of
+from numpy.typing import NDArray
+from tests.support.sampled import BOTH
+from tests.support.serial_urdf import serial_urdf
+
+from ikgen.generation.derive import derive
+from ikgen.generation.request import Request
+
+pytestmark = pytest.mark.usefixtures("solved_once")
+
+SHOULDER = [
+    ("0 0 0.3", "0 0 0"), ("0 0 0", "-1.047 0 0"), ("0 0 0", "1.047 0 0"), ("0.3 0.02 0.3", "-1.571 0 0"),
+    ("0.2 0 0.03", "0.785 0 0"), ("0.1 0.05 0", "1.571 0 0"),
+]  # fmt: skip
+"""At 0 joint 1 puts the axes of joints 0 and 2 on one line."""
+
+OFFSET = [
+    ("0 0 0.3", "0 0 0"), ("0.03 0 0", "-1.571 0 0"), ("0 -0.3 0", "1.571 0 0"), ("0 0 0", "-1.571 0 0"),
+    ("0 -0.3 0", "1.571 0 0"), ("0 0 0", "-1.571 0 0"), ("0.08 0 0", "1.571 0 0"),
+]  # fmt: skip
+"""Rounded, of which a quartic has two roots in one at poses where the file's arm has two solutions."""
+
+MEETING = [
+    [-1.5707963267948966, 1.5717963267948964, 1.5707963267948966, 0.7853981633974483,
+     1.5631442796531496, 0.7863981633974483, 0.7853981633974483],
+    [-0.9922384194170122, -1.5749259525587025, -2.764850435788799, 0.8843494027308239,
+     -1.5630775173094966, 1.9555871106122087, -0.3449949120907947],
+]  # fmt: skip
+
+
+def found_at(found: NDArray[np.float64], q: NDArray[np.float64]) -> NDArray[np.float64]:
+    """How far (rad) rows (n, dof) are from configurations (n, dof), on the shortest way."""
+    return np.asarray(np.abs(np.remainder(found - q + np.pi, 2.0 * np.pi) - np.pi).max(axis=1))
+
+
+@BOTH
+def test_both_signs_of_a_joint_are_found_next_to_nothing(language: str, tmp_path: Path) -> None:
+    """Newton steps from both go to one of them: they have lost in which direction each of them is."""
+    path = serial_urdf(tmp_path / "arm.urdf", SHOULDER, tip=("0 0 0.1", "0 0 0"), limit=np.pi)
+    derivation, rng = derive(Request(path)), np.random.default_rng(1)
+    arm, runner = arm_of(derivation), runner_of(derivation, language, tmp_path)
+    for off in (1e-6, 3e-6, 1e-5):
+        q = rng.uniform(-2.5, 2.5, (120, 6))
+        q[:, 1] = rng.choice([-off, off], 120)
+        index, found, _ = runner.solve_many(arm.oracle.forward(q)).flat()
+        near = np.unique(index[found_at(found, q[index]) < 1e-5])
+        assert len(near) >= 119, off
+
+
+@BOTH
+def test_two_solutions_are_found_where_a_quartic_has_one_root(
+    language: str, tmp_path: Path
+) -> None:
+    path = serial_urdf(tmp_path / "arm.urdf", OFFSET, tip=("0 0 0.1", "0 0 0"), limit=np.pi)
+    derivation, q = derive(Request(path, free={"j6": None})), np.array(MEETING)
+    arm, runner = arm_of(derivation), runner_of(derivation, language, tmp_path)
+    index, found, _ = runner.solve_many(arm.oracle.forward(q), free=q[:, 6:]).flat()
+    near = index[found_at(found, q[index]) < 1e-6]
+    assert sorted(near.tolist()) == [0, 1]
