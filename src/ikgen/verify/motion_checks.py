@@ -29,6 +29,9 @@ Array = NDArray[np.float64]
 CLEARLY_REGULAR = 0.05  # smallest singular value all the way
 FOUND = 1e-6  # rad or m
 _MOTIONS, _SEARCHES, _DRAWN = 15, 3, 600
+_GRIDS = 1
+"""Searches over grids of several held joints, which take seconds each in Python."""
+
 _FARTHEST = 0.2
 """rad, or m and of the arm's length, that a joint or what follows it moves between two poses."""
 
@@ -97,7 +100,8 @@ def check_search(arm: ArmUnderTest, runner: MovingRunner, motions: Motions) -> C
     """The best row near a configuration at its pose is that configuration, and no row comes twice, but of
     one held joint's intervals, which may have one best row where they meet."""
     failures, worst, case = 0, 0.0, ""
-    some = list(zip(motions.start, motions.poses[:, 0], strict=True))[:_SEARCHES]
+    count = _SEARCHES if len(arm.held) < 2 else _GRIDS
+    some = list(zip(motions.start, motions.poses[:, 0], strict=True))[:count]
     for i, (q, pose) in enumerate(some):
         rows = runner.search(pose, q)
         off = float(arm.distance(rows[0], q)) if len(rows) else np.inf
