@@ -36,6 +36,28 @@ MEETING = [
 ]  # fmt: skip
 
 
+TELESCOPE = [
+    ("0 0 0.3", "0 0 0"), ("0.1 0 0.2", "-1.5708 0 0"), ("0.1 0 0", "0 1.571 0"), ("0 0 0.2", "0 0 0"),
+    ("0 0 0.1", "1.5708 0 0"), ("0 0 0.1", "-1.5708 0 0"), ("0 0.02 0.1", "1.5708 0 0"),
+]  # fmt: skip
+"""Joints 2 and 3 slide, as far as each other."""
+
+RANGES = [
+    (-np.pi, np.pi),
+    (-1.5, 1.2),
+    (0.0, 0.5),
+    (0.0, 0.5),
+    (-2.0, 2.0),
+    (-np.pi, np.pi),
+    (-np.pi, np.pi),
+]
+STRAIGHT = [
+    [0.17440544271208136, 0.0, 0.14720211053018623, -0.16784288461444197, -3.141592653589793,
+     -2.2577628739930318],
+    [np.pi, 0.0, 0.25, -0.6598977962130697, np.pi, -np.pi],
+]  # fmt: skip
+
+
 def found_at(found: NDArray[np.float64], q: NDArray[np.float64]) -> NDArray[np.float64]:
     """How far (rad) rows (n, dof) are from configurations (n, dof), on the shortest way."""
     return np.asarray(np.abs(np.remainder(found - q + np.pi, 2.0 * np.pi) - np.pi).max(axis=1))
@@ -65,3 +87,20 @@ def test_two_solutions_are_found_where_a_quartic_has_one_root(
     index, found, _ = runner.solve_many(arm.oracle.forward(q), free=q[:, 6:]).flat()
     near = index[found_at(found, q[index]) < 1e-6]
     assert sorted(near.tolist()) == [0, 1]
+
+
+@BOTH
+def test_a_slide_s_elimination_does_not_hide_what_is_singular(
+    language: str, tmp_path: Path
+) -> None:
+    """The pose itself has no roots of it, poses beside have."""
+    slides = {2: "0 0 1", 3: "0 0 1"}
+    path = serial_urdf(
+        tmp_path / "arm.urdf", TELESCOPE, tip=("0 0 0.1", "0 0 0"), slides=slides, limit=RANGES
+    )
+    head, tail = path.read_text().split('<joint name="j3" type="prismatic">')
+    path.write_text(f'{head}<joint name="j3" type="prismatic"><mimic joint="j2"/>{tail}')
+    derivation, q = derive(Request(path)), np.array(STRAIGHT)
+    arm, runner = arm_of(derivation), runner_of(derivation, language, tmp_path)
+    index, found, _ = runner.solve_many(arm.oracle.forward(q)).flat()
+    assert sorted(set(index[found_at(found, q[index]) < 1e-6].tolist())) == [0, 1]

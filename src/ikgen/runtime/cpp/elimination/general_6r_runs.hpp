@@ -88,7 +88,8 @@ inline constexpr int kSure = 3;  // runs that have to find none where there is n
 // the next elimination and with the pose displaced by less, until one finds all that is known and no more, an even number,
 // none of it stalls near another, and one of the pose itself tells; where solutions meet the next elimination has to find
 // as many that lie apart, as one alone may miss the same of a crowd twice, and so where there are fewer than the first had
-// roots that may be real: what solutions have in common may be what it hides. False where there may be more than was found: no
+// roots that may be real, or than a displaced pose has: what solutions have in common may be what it hides, and what is
+// singular its roots. False where there may be more than was found: no
 // run settles it; or where there may be some though none was found: an elimination of the pose itself lost its rank, or has
 // roots, real ones or some that may be.
 template <auto Run, class Frames, std::size_t N>
@@ -117,7 +118,8 @@ inline bool solve_in_runs(const Frames& F, const Frame& T, const Turning& turnin
         const bool alone = number == 0 && given <= mine.count && roots.simple && out.count == roots.real && out.count > 0;
         const bool even = out.count % 2 == 0, again = number > 0 && !roots.stalled;
         const bool others = number > 2;  // the next elimination's runs have begun
-        const bool told = out.count >= perhaps || others || N == 1;
+        const bool beside = shift && !others && out.count < roots.real;  // has roots that may be of more
+        const bool told = !beside && (out.count >= perhaps || others || N == 1);
         const bool repeated = again && told && even && mine.count == known && out.count == known;
         const bool enough = least >= 0 && out.count >= least;
         const bool none = out.count == 0, fewer = none && (doubtful || number < kSure);
