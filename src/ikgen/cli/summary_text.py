@@ -67,11 +67,19 @@ def _task(derivation: Derivation) -> str:
 
 
 def _held(derivation: Derivation) -> str:
-    """What is held, and that the rest cannot do all of the task."""
+    """What is held, and that the rest cannot do all of the task, or hardly moves."""
+    from ikgen.generation.idle_solved import idle_solved
+    from ikgen.kinematics.idle_joints import lock_options
     from ikgen.tasks.fitting import over_constrained
 
-    held = derivation.reading.dh.held
+    held, idle = derivation.reading.dh.held, idle_solved(derivation.reading.dh, derivation.task)
     words = f", held: {', '.join(held)}" if held else ""
+    if idle:
+        names = " and ".join(joint.name for joint in idle)
+        verb, them = (
+            ("hardly move", "their values") if len(idle) > 1 else ("hardly moves", "its value")
+        )
+        words += f"; {names} {verb}: answers only poses with {them} ({lock_options(idle)})"
     if not over_constrained(derivation.reading.dh, derivation.task):
         return words
     return f"{words}; OVER-CONSTRAINED, answers only poses that the arm can take to rounding"

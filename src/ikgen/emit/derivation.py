@@ -39,7 +39,7 @@ class Reading:
 class Held:
     """Joints that were chosen to be held, base to tip, why, the choices that came next, those before that
     the verification refused, and what put each of the `others` behind ("" where that is not known);
-    `shared` are joints that move and carry other arms too."""
+    `shared` are joints that move and carry other arms too, `idle` those held that hardly move."""
 
     joints: tuple[str, ...]
     why: str
@@ -47,12 +47,14 @@ class Held:
     refused: tuple[tuple[str, ...], ...] = ()
     behind: tuple[str, ...] = ()
     shared: tuple[str, ...] = ()
+    idle: tuple[str, ...] = ()
 
     @property
     def words(self) -> str:
         """One line."""
         it = "it" if len(self.joints) == 1 else "them"
-        line = f"holding {' and '.join(self.joints)}: {self.why} with {it} held"
+        named = " and ".join(f"{x}{' (hardly moves)' * (x in self.idle)}" for x in self.joints)
+        line = f"holding {named}: {self.why} with {it} held"
         told = (("others", self.others, self.behind), ("failed verification", self.refused, ()))
         for kind, names, reasons in told:
             words = zip_longest(map(" and ".join, names), reasons, fillvalue="")

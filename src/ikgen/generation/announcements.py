@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from ikgen.generation.idle_solved import idle_warning
 from ikgen.generation.lost_freedom import lost_freedom
 from ikgen.generation.tip_on_axis import tip_on_axis
 from ikgen.model.counted import counted
@@ -17,12 +18,13 @@ __all__ = ["announcements"]
 def announcements(derivation: Derivation) -> tuple[str, ...]:
     """What was odd in the file, that the task is not the first that fits, that it asks more than the
     arm can do, or than its name says, that the tip lies on the last axis where the task tells of it, and
-    why joints of an arm with six at most are held."""
+    why joints of an arm with six at most are held, and that some which it needs hardly move."""
     told = (
         _passed_over(derivation),
         _over_constrained(derivation) or _tilting(derivation),
         tip_on_axis(derivation.reading.dh, derivation.task) if derivation.chosen else "",
         lost_freedom(derivation.reading, ()) if derivation.held else "",
+        idle_warning(derivation.reading.dh, derivation.task),
     )
     return (*derivation.reading.source.warnings, *filter(None, told))
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import groupby
 from typing import TYPE_CHECKING
 
 from ikgen.emit.derivation import Held, Reading
@@ -159,7 +160,8 @@ def _with_joints_held(
     for choice, form in forms_held(reading, choices, demand):
         tried.append((choice, form))
         later = choices[len(tried) :]
-        if not later or min(preference(*pair) for pair in tried) <= _hoped(later[0]):
+        best = min(tried, key=lambda pair: preference(*pair))
+        if not later or (best[1].sound and preference(*best) <= _hoped(later[0])):
             break
     tried.sort(key=lambda pair: preference(*pair))
     taken = taken_form(tried, demand)
@@ -172,8 +174,20 @@ def _with_joints_held(
 def taken_form(
     tried: Sequence[tuple[HeldChoice, ClosedForm]], demand: Demand
 ) -> tuple[HeldChoice, ClosedForm] | None:
-    """Which of the forms, best first, is taken, settled; None where no joint held gives one. Of
-    eliminations the first that is as quick at special values of the held joints as elsewhere."""
+    """Which of the forms, best first, is taken, settled; None where no joint held gives one. Those that
+    solve for a joint which hardly moves come after all others."""
+    for _, alike in groupby(tried, key=lambda pair: len(pair[0].idle)):
+        taken = _taken_of(list(alike), demand)
+        if taken is not None:
+            return taken
+    return None
+
+
+def _taken_of(
+    tried: Sequence[tuple[HeldChoice, ClosedForm]], demand: Demand
+) -> tuple[HeldChoice, ClosedForm] | None:
+    """The same of those that hold as many joints which hardly move. Of eliminations the first that is as
+    quick at special values of the held joints as elsewhere."""
     choice, form = tried[0]
     if form.sound:
         return choice, _settled(form, choice.dh, demand)
@@ -202,20 +216,21 @@ def rule_tries(dh: DHChain) -> int:
     return max(1, min(RULE_TRIES, RULE_TRIES * _FULL_TRIES_JOINTS**3 // dh.dof**3))
 
 
-def preference(choice: HeldChoice, form: ClosedForm) -> tuple[bool, bool, bool]:
-    """What comes first of forms in the order of their choices: sound ones, then those with a weak step; of
-    either those with two branches a step where the class lets expect them."""
+def preference(choice: HeldChoice, form: ClosedForm) -> tuple[int, bool, bool, bool]:
+    """What comes first of forms in the order of their choices: those that hold most joints which hardly
+    move; of these sound ones, then those with a weak step; of either those with two branches a step where
+    the class lets expect them."""
     from ikgen.kinematics.form_class import is_two_branch
 
     as_expected = is_two_branch(choice.form) and form.two_branch
-    return not form.sound, not form.closed, not as_expected
+    return -len(choice.idle), not form.sound, not form.closed, not as_expected
 
 
-def _hoped(choice: HeldChoice) -> tuple[bool, bool, bool]:
+def _hoped(choice: HeldChoice) -> tuple[int, bool, bool, bool]:
     """The best preference that a form of a choice can have."""
     from ikgen.kinematics.form_class import is_two_branch
 
-    return False, False, not is_two_branch(choice.form)
+    return -len(choice.idle), False, False, not is_two_branch(choice.form)
 
 
 def _explained(
@@ -236,7 +251,8 @@ def _explained(
     others = [choice for choice in choices if choice.held != taken.held][:_OTHERS]
     behind = tuple(choice.behind(taken) for choice in others)
     names = tuple(choice.held for choice in others)
-    held = Held(taken.held, why, names, refused, behind, _shared(form.reading, taken))
+    shared = _shared(form.reading, taken)
+    held = Held(taken.held, why, names, refused, behind, shared, taken.idle)
     return replace(form, held=held)
 
 

@@ -1,9 +1,10 @@
 """Which joints to hold of an arm with more of them than its task fixes, ranked before any derivation.
 
-The ranking is by the closed form that the geometry lets expect (`ikgen.kinematics.form_class`), then by
-the range of the held joints inside their limits, then by how well the joints that move do the task, which
-decides where ranges are much the same: of an arm with two spherical joints the last joint may turn a little
-farther than the others, and held it leaves an arm that is near a singularity several times as often.
+Joints that hardly move are held before all others: solved for, they are inside their limits at hardly any
+pose. Then the ranking is by the closed form that the geometry lets expect (`ikgen.kinematics.form_class`),
+then by the range of the held joints inside their limits, then by how well the joints that move do the task,
+which decides where ranges are much the same: of an arm with two spherical joints the last joint may turn a
+little farther than the others, and held it leaves an arm that is near a singularity several times as often.
 """
 
 from __future__ import annotations
@@ -58,7 +59,7 @@ class HeldChoice:
     configurations inside the limits, half of them with the held joints at their defaults: one that is
     near a singularity more often has less. `volume` is the mean of the product of all singular values,
     of how much of the task's space small motions fill. `poor`: whether it has far less of either than the
-    best of its class.
+    best of its class. `idle` are those of `held` that hardly move.
     """
 
     held: tuple[str, ...]
@@ -69,6 +70,7 @@ class HeldChoice:
     volume: float
     near: bool = False
     poor: bool = False
+    idle: tuple[str, ...] = ()
 
     @property
     def words(self) -> str:
@@ -87,10 +89,14 @@ class HeldChoice:
         """What the choice is ranked by, in order."""
         near = ", of the geometry nearby" if self.near else ""
         measures = f"held range {self.span:.2g}; conditioning {self.condition:.2g}"
-        return f"class: {self.class_words}{near}; {measures}"
+        first = f"hardly moves: {' and '.join(self.idle)}; " if self.idle else ""
+        return f"{first}class: {self.class_words}{near}; {measures}"
 
     def behind(self, taken: HeldChoice) -> str:
         """What puts it behind the choice that was taken; "" where it was before that."""
+        if len(self.idle) != len(taken.idle):
+            solved = [name for name in taken.idle if name not in self.idle]
+            return f"solves for {' and '.join(solved)}" if len(self.idle) < len(taken.idle) else ""
         if (self.form, self.near) != (taken.form, taken.near):
             later = (self.form, self.near) > (taken.form, taken.near)
             return self.class_words if later else ""
@@ -149,21 +155,21 @@ def held_choices(reading: Reading, task: Task) -> tuple[HeldChoice, ...]:
 
 def _sorted(choices: Sequence[HeldChoice]) -> list[HeldChoice]:
     """Best first."""
-    best: dict[int, tuple[float, float]] = {}
+    best: dict[tuple[int, int], tuple[float, float]] = {}
     for one in choices:
-        condition, volume = best.get(one.form, (0.0, 0.0))
-        best[one.form] = max(one.condition, condition), max(one.volume, volume)
+        condition, volume = best.get(_class(one), (0.0, 0.0))
+        best[_class(one)] = max(one.condition, condition), max(one.volume, volume)
 
     def poor(one: HeldChoice) -> bool:
-        condition, volume = best[one.form]
+        condition, volume = best[_class(one)]
         return one.condition < _POOR * condition or one.volume < _POOR * volume
 
     found = [replace(one, poor=poor(one)) for one in choices]
 
-    def group(one: HeldChoice) -> tuple[int, bool, bool]:
-        return one.form, one.near, one.poor
+    def group(one: HeldChoice) -> tuple[tuple[int, int], bool, bool]:
+        return _class(one), one.near, one.poor
 
-    widest: dict[tuple[int, bool, bool], float] = {}
+    widest: dict[tuple[tuple[int, int], bool, bool], float] = {}
     for one in found:
         widest[group(one)] = max(one.span, widest.get(group(one), 0.0))
 
@@ -176,12 +182,18 @@ def _sorted(choices: Sequence[HeldChoice]) -> list[HeldChoice]:
     return sorted(found, key=key)
 
 
+def _class(one: HeldChoice) -> tuple[int, int]:
+    """What choices are compared within: as many joints held that hardly move, and one closed form."""
+    return -len(one.idle), one.form
+
+
 def _ranked(dh: DHChain, kept: Sequence[tuple[Sequence[int], float, float]]) -> list[HeldChoice]:
     """A choice for each set of joints that move, by index, with its condition and volume."""
     from ikgen.kinematics.axis_relations import axis_relations, reach
     from ikgen.kinematics.form_class import form_class
+    from ikgen.kinematics.idle_joints import idle_joints
 
-    relations, length = axis_relations(dh), reach(dh)
+    relations, length, idle = axis_relations(dh), reach(dh), idle_joints(dh)
     found = []
     for joints, condition, volume in kept:
         rows = [i for i, row in enumerate(dh.rows) if row.driver in joints]
@@ -195,6 +207,7 @@ def _ranked(dh: DHChain, kept: Sequence[tuple[Sequence[int], float, float]]) -> 
                 round(sum(_span(dh.joints[j], length) for j in held), 6),
                 float(f"{condition:.2g}"),
                 float(f"{volume:.2g}"),
+                idle=tuple(name for name in names if name in idle),
             )
         )
     return found

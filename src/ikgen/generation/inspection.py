@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from ikgen.errors import UnsolvedChainError
 from ikgen.generation.advice import attempts
 from ikgen.generation.held_needs import check_task
+from ikgen.generation.idle_solved import idle_warning
 from ikgen.generation.lost_freedom import lost_freedom
 from ikgen.generation.progress import Progress, silent
 from ikgen.generation.read import has_arm_angle, read, read_tree
@@ -72,10 +73,15 @@ class Inspection:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What was odd in the file, and that joints are not independent."""
+        """What was odd in the file, that joints are not independent, or that some hardly move."""
+        from ikgen.tasks import find_task
+
         if self.reading is not None:
             lost = lost_freedom(self.reading, self.reading.dh.free)
-            return (*self.reading.source.warnings, *filter(None, [lost]))
+            idle, taken = "", self.taken
+            if taken is not None and taken.dh is not None:
+                idle = idle_warning(taken.dh, find_task(taken.task))
+            return (*self.reading.source.warnings, *filter(None, [lost, idle]))
         return self.tree.source.warnings if self.tree is not None else ()
 
 

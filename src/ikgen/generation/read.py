@@ -110,7 +110,7 @@ def _read(request: Request, tree: JointTree | None) -> Reading:
     _check_units(request, tree.joints)
     _check_locks(request, tree.joints)
     tree, chain, coupled = _coupled_chain(request, tree)
-    tree = _of_chain(tree, chain)
+    tree = _of_chain(tree, chain, request)
     reading = Reading(tree.source, tree, chain, to_dh(chain, free=free), coupled)
     if request.calibration is None or is_offsets(request.calibration):
         return _with_offsets(reading, request)
@@ -121,16 +121,21 @@ def _read(request: Request, tree: JointTree | None) -> Reading:
     return _told(found, request.calibration, reading.dh)
 
 
-def _of_chain(tree: JointTree, chain: Chain) -> JointTree:
-    """Without what was odd about joints that do not move the chain, and with what is of those that do."""
+def _of_chain(tree: JointTree, chain: Chain, request: Request) -> JointTree:
+    """Without what was odd about joints that do not move the chain, or that is why the request locks some,
+    and with what is of those that do."""
     from ikgen.chains.follower_limits import beyond_own_limits
     from ikgen.importers.urdf.topology import TreeIndex
 
     between = TreeIndex.of(tree).path(chain.base_link, chain.tip_link) or ()
     near = {joint.name for joint in between} | {joint.name for joint in chain.joints}
     others = {joint.name for joint in tree.joints} - near
-    about = ((text, _ABOUT_JOINT.search(text)) for text in tree.source.warnings)
-    kept = tuple(text for text, found in about if found is None or found[1] not in others)
+    kept = []
+    for text in tree.source.warnings:
+        found = _ABOUT_JOINT.search(text)
+        locked = found is not None and found[1] in request.lock and "; --lock " in text
+        if not locked and (found is None or found[1] not in others):
+            kept.append(text)
     warnings = (*kept, *beyond_own_limits(tree, chain, between))
     return replace(tree, source=replace(tree.source, warnings=warnings))
 

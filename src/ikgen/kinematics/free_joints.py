@@ -7,6 +7,8 @@ import math
 from collections.abc import Iterable, Iterator
 
 from ikgen.errors import UsageError
+from ikgen.kinematics.axis_relations import reach
+from ikgen.kinematics.idle_joints import hardly_moves
 from ikgen.model.chain import ActuatedJoint
 from ikgen.model.dh import DHChain
 
@@ -22,16 +24,18 @@ def free_defaults(dh: DHChain, given: Iterable[tuple[str, float | None]]) -> tup
     brought inside the limits, or another where what moves is singular everywhere with that. Raises
     UsageError for a given value outside them."""
     values = dict(given)
-    choices = [_choices(held, values.get(held.name)) for held in dh.held_inputs]
+    length = reach(dh)
+    choices = [_choices(held, values.get(held.name), length) for held in dh.held_inputs]
     first = tuple(one[0] for one in choices)
     if dh.arm_angle or dh.symbols or all(len(one) == 1 for one in choices):
         return first
     return next(_leaving_all(dh, itertools.product(*choices)), first)
 
 
-def _choices(joint: ActuatedJoint, value: float | None) -> tuple[float, ...]:
-    """The value that is given; else, in the order in which they are tried, 0, the middle of limits that it
-    is outside of or where they have none the limit next to it, and values between the limits."""
+def _choices(joint: ActuatedJoint, value: float | None, length: float) -> tuple[float, ...]:
+    """The value that is given; of a joint that hardly moves, in an arm of a `length` (m), the middle; else,
+    in the order in which they are tried, 0, the middle of limits that it is outside of or where they have
+    none the limit next to it, and values between the limits."""
     low, high = joint.limits.lower, joint.limits.upper
     if value is not None:
         if low <= value <= high:
@@ -40,6 +44,8 @@ def _choices(joint: ActuatedJoint, value: float | None) -> tuple[float, ...]:
             f"--free {joint.name}={value:.9g}: outside its limits, {low:.9g} to {high:.9g}",
             hint="give a value inside them (rad or m), or none",
         )
+    if hardly_moves(joint, length):
+        return (0.5 * (low + high),)
     near = min(max(low, 0.0), high)
     bottom = low if math.isfinite(low) else min(high, math.pi) - 2.0 * math.pi
     top = high if math.isfinite(high) else bottom + 2.0 * math.pi

@@ -44,6 +44,13 @@ class Limits:
     lower: float
     upper: float
 
+    @property
+    def middle_text(self) -> str:
+        """The middle of finite limits in as few digits as lie inside them."""
+        middle = 0.5 * (self.lower + self.upper)
+        texts = (f"{middle:.{digits}g}" for digits in range(3, 17))
+        return next((x for x in texts if self.lower <= float(x) <= self.upper), repr(middle))
+
 
 @dataclass(frozen=True, slots=True)
 class Joint:

@@ -175,7 +175,7 @@ def _limits(joint: Element, type_: JointType, name: str, place: Place) -> Limits
                 text = limit.get(attribute)
                 place.warn(limit, f"joint '{name}': negative {attribute} limit {text} ignored")
     try:
-        limits, notes = joint_limits(type_, bounds.get("lower"), bounds.get("upper"))
+        limits, notes = joint_limits(type_, bounds.get("lower"), bounds.get("upper"), name)
     except BadValueError as bad:
         raise place.error(joint, f"joint '{name}': {bad}", bad.hint) from None
     for note in notes:

@@ -23,9 +23,9 @@ FARTHEST = 1e6
 
 
 def joint_limits(
-    type_: JointType, lower: float | None, upper: float | None
+    type_: JointType, lower: float | None, upper: float | None, name: str
 ) -> tuple[Limits, tuple[str, ...]]:
-    """The range of a joint (rad or m) and what was odd about it.
+    """The range of the joint `name` (rad or m) and what was odd about it.
 
     URDF's default of an absent bound is 0, which cannot be meant where both are absent or 0: such
     a joint has no limits. URDF gives a continuous joint none, whatever its file states, and a revolute
@@ -52,7 +52,10 @@ def joint_limits(
             "write limits in rad or m",
         )
     if low == high:
-        notes.append(f"lower = upper = {low:g}: the joint cannot move")
+        option = f"--lock {name}={Limits(low, high).middle_text}"
+        notes.append(
+            f"lower = upper = {low:g}: the joint cannot move; {option} makes it a constant"
+        )
     if type_ is JointType.PRISMATIC:
         return Limits(low, high), tuple(notes)
     limits, odd = turning_limits(low, high)
