@@ -51,7 +51,7 @@ class PlugIn:
                 found = found()
         if not isinstance(found, kind):
             raise self._error(
-                f"is a {type(found).__name__}, not a {kind.__module__}.{kind.__name__}"
+                f"is of type {type(found).__name__}, not {kind.__module__}.{kind.__name__}"
             )
         return found
 

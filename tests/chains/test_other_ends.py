@@ -59,3 +59,21 @@ def test_the_command_line_says_so(tmp_path: Path, capsys: pytest.CaptureFixture[
     assert f"{told} --add adds one" in capsys.readouterr().err
     assert run(["init", str(path), "--tip", "ring_1_link", "--add", "-o", str(out)]) == 0
     assert "index" not in capsys.readouterr().err and 'tip = "ring_1_link"' in out.read_text()
+
+
+def test_a_generation_names_the_fingers_that_it_left_out(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "hand.urdf"
+    command = ["from-urdf", str(path), "-o", str(tmp_path), "--no-verify"]
+    path.write_text(hand(PALM))
+    told = "; other branches end at index_1_link, ring_1_link (--tip)"
+    for options, shown in (([], True), (["--tip", "ring_1_link", "--force"], False)):
+        assert run([*command, *options]) == 0
+        (line,) = (x for x in capsys.readouterr().out.splitlines() if x.startswith("robot:"))
+        assert line.endswith(told) is shown
+    path.write_text(hand({**PALM, "middle": 4}))
+    assert run(command) == 2
+    said = capsys.readouterr().err
+    assert "several chains" in said
+    assert "taken for fingers or side branches: index_1_link, ring_1_link; --tip LINK" in said

@@ -18,6 +18,7 @@ from ikgen.errors import (
     UsageError,
 )
 from ikgen.importers import load_tree
+from ikgen.importers.urdf.urdf_tree import parse_urdf
 
 FIXTURES = Path(__file__).parents[2] / "urdf_fixtures"
 
@@ -302,3 +303,28 @@ def test_a_mimic_joint_that_hardly_moves_is_refused():
     for multiplier in (0.0, 1e-4):
         still = {"j2": mimic("j1", multiplier)}
         assert select_chain(serial("revolute", "revolute", "revolute", **still)).dof == 2
+
+
+@pytest.mark.parametrize(
+    ("joints", "base", "hint"),
+    [
+        ([], None, "the file has no joints: check that it is complete"),
+        ([("f", "fixed", "a", "b")], None, "none of the file's joints is revolute, continuous or"),
+        (
+            [("f", "floating", "a", "b")],
+            None,
+            "none of the file's joints is revolute, continuous or",
+        ),
+        (
+            [("f", "fixed", "a", "b"), ("j", "revolute", "a", "c")],
+            "b",
+            "choose other links by --base and --tip",
+        ),
+    ],
+)
+def test_where_no_joint_moves_the_way_out_is_one_that_there_is(joints, base, hint):
+    bare = parse_urdf('<robot name="r"><link name="a"/></robot>', path=Path("r.urdf"))
+    tree = tree_of(*joints) if joints else bare
+    with pytest.raises(UsageError, match="no joint moves") as caught:
+        select_chain(tree, base)
+    assert caught.value.hint.startswith(hint)

@@ -74,7 +74,7 @@ def test_broken_ones_matter_only_to_who_uses_them(tmp_path: Path, planar: Path) 
     command = ("from-urdf", planar, "-o", tmp_path, "--task", "position", "--no-verify")
     assert ikgen(site, *command).returncode == 0
     blamed(ikgen(site, *command, "--emit", "fortran"), "emitter 'fortran'", "other_fortran:EMITTER")
-    blamed(ikgen(site, *command, "--task", "planar"), "task 'planar'", "is a int")
+    blamed(ikgen(site, *command, "--task", "planar"), "task 'planar'", "is of type int")
     (tmp_path / "robot.sdf").write_text("")
     blamed(ikgen(site, "inspect", tmp_path / "robot.sdf"), "importer 'sdf'", "NO_SUCH")
 

@@ -135,7 +135,12 @@ REFUSED = {
     "cut off": ('<robot name="r">\n<link name="a"', "not well-formed", "correct", 2),
     "merge conflict": (robot("<<<<<<< HEAD"), "not well-formed", "merge conflict", 4),
     "lfs pointer": ("version https://git-lfs.github.com/spec/v1", "not well-formed", "lfs pull", 1),
-    "sdf": ("<sdf><model/></sdf>", "<sdf>, not <robot>", "SDF", 1),
+    "sdf": ("<sdf><model/></sdf>", "<sdf>, not <robot>", "looks like an SDF file", 1),
+    "mjcf": ("<mujoco/>", "<mujoco>, not <robot>", "looks like a MuJoCo MJCF file", 1),
+    "web page": ("<!doctype html><html><body>404</body></html>", "not well-", "a web page", 1),
+    "torn web page": ("\n<!-- 1 --><HTML><br></HTML>", "not well-formed", "a web page", 2),
+    "closed web page": ("<html><body/></html>", "<html>, not <robot>", "a web page", 1),
+    "xhtml": ('<!DOCTYPE html PUBLIC "-//W3C" "x"><html/>', "names a DTD", "a web page", 1),
     "xacro element": (
         robot("<xacro:include filename='x'/>", attributes='name="r" xmlns:xacro="http://x/xacro"'),
         "<xacro:include>",
@@ -195,6 +200,8 @@ BENT = {
         "-2 to 1e+09 rad: taken as unlimited",
     ),
     "degrees": (robot(joint('<limit lower="-170" upper="170"/>')), "look like degrees"),
+    "few degrees": (robot(joint('<limit lower="-22.5" upper="15"/>')), "look like degrees"),
+    "odd degrees": (robot(joint('<limit lower="-114.6" upper="0.3"/>')), "look like degrees"),
     "turned by degrees": (
         robot(joint('<origin rpy="0 -90 0"/>' + LIMIT)),
         "rpy 0 -90 0 looks like degrees: taken as rad",
@@ -223,6 +230,12 @@ BENT = {
 
 def test_one_far_joint_is_no_sign_of_millimetres(read):
     text = robot(joint('<origin xyz="0 0 317"/>' + LIMIT))
+    assert read(text).source.warnings == ()
+
+
+@pytest.mark.parametrize("turned", [16.7, 16.7551608, 12.5, 31.4159])
+def test_wrists_of_several_turns_are_not_taken_for_degrees(read, turned):
+    text = robot(joint(f'<limit lower="{-turned}" upper="{turned}"/>'))
     assert read(text).source.warnings == ()
 
 

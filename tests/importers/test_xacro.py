@@ -308,3 +308,28 @@ def test_an_origin_that_is_inserted_without_the_prefix_is_never_taken_for_none(f
     )
     with pytest.raises(BadDescriptionError, match="<insert_block> left in joint 'j'"):
         load_tree(file)
+
+
+def test_a_file_of_macros_alone_names_them(file):
+    file.write_text(
+        f'{OPEN}<xacro:macro name="arm" params="prefix"><link name="a"/></xacro:macro>'
+        '<xacro:macro name="hand" params=""><link name="b"/></xacro:macro></robot>'
+    )
+    with pytest.raises(BadDescriptionError, match="no links") as caught:
+        load_tree(file)
+    assert caught.value.hint == (
+        "the file only defines macros (arm, hand): give the file that calls them, by <xacro:arm ...>"
+    )
+    file.write_text(f"{OPEN}</robot>")
+    with pytest.raises(BadDescriptionError, match="no links") as caught:
+        load_tree(file)
+    assert caught.value.hint == "check that the file is complete"
+
+
+@pytest.mark.parametrize("name", ["len", "float", "math.sin"])
+def test_a_function_in_the_place_of_a_property_is_named(file, name):
+    write(file, f'<xacro:property name="x" value="${{2 * 3}}"/>\n<link name="${{{name}}}"/>')
+    with pytest.raises(BadDescriptionError) as caught:
+        load_tree(file)
+    assert f"'{name}' is a function, not a property of the file" in caught.value.message
+    assert caught.value.line == 3

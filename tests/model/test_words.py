@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from ikgen.model.counted import counted
+from ikgen.model.counted import counted, with_article
 from ikgen.model.dh import Snap
 
 
@@ -29,3 +29,8 @@ def test_numbers_that_differ_look_different() -> None:
     )
     before, after = Snap("a", 0.1, 0.1 + 1e-17 + 2e-17).texts
     assert before != after
+
+
+@pytest.mark.parametrize(("word", "words"), [("int", "an int"), ("list", "a list"), ("", "a ")])
+def test_vowels_take_another_article(word: str, words: str) -> None:
+    assert with_article(word) == words

@@ -6,9 +6,10 @@ import shlex
 from collections.abc import Iterable
 
 from ikgen.chains.arms import ChainCandidate, candidate_chains, conventional_base
+from ikgen.chains.other_ends import other_ends
 from ikgen.errors import UsageError
 from ikgen.importers.urdf.topology import TreeIndex
-from ikgen.model.counted import counted
+from ikgen.model.counted import counted, listed
 from ikgen.model.joint_tree import Joint, JointTree
 
 __all__ = ["choose_ends", "not_below"]
@@ -33,6 +34,10 @@ def choose_ends(
     options = "\n".join(f"  {_options(candidate)}" for candidate in candidates[:_MOST_SHOWN])
     if len(candidates) > _MOST_SHOWN:
         options += f"\n  ... and {len(candidates) - _MOST_SHOWN} more"
+    others = other_ends(tree, candidates, base)
+    if others:
+        fingers = f"taken for fingers or side branches: {listed(others)}"
+        options += f"\n{fingers}; --tip LINK takes one for an arm"
     raise UsageError(
         f"robot '{tree.name}' has several chains; choose one", hint=f"give one of:\n{options}"
     )
@@ -44,11 +49,22 @@ def _no_arm(tree: JointTree, index: TreeIndex, base: str | None) -> UsageError:
     moving = [joint.name for joint in below if joint.type.moves_on_one_axis]
     where = f"below '{base}'" if base is not None else f"in robot '{tree.name}'"
     if not moving:
-        hint = "choose other links by --base and --tip"
-        return UsageError(f"no joint moves {where}{_unread(below)}", hint=hint)
+        return UsageError(f"no joint moves {where}{_unread(below)}", hint=_elsewhere(tree))
     return UsageError(
         f"no arm {where}: only fingers, wheels or rotors move there ({moving[0]}, ...)",
         hint="choose the links of a chain by --base and --tip",
+    )
+
+
+def _elsewhere(tree: JointTree) -> str:
+    """The way out where no joint moves below the base: another one, where some joint of the file moves."""
+    if any(joint.type.moves_on_one_axis for joint in tree.joints):
+        return "choose other links by --base and --tip"
+    if not tree.joints:
+        return "the file has no joints: check that it is complete"
+    turning = "revolute, continuous or prismatic"
+    return (
+        f"none of the file's joints is {turning}: check their types, and that the file is complete"
     )
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from ikgen.cli.tables import table
 from ikgen.generation.result import rounding
-from ikgen.model.counted import counted
+from ikgen.model.counted import counted, listed
 
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Derivation
@@ -22,7 +22,7 @@ def summary(generation: Generation) -> str:
     derivation = generation.derivation
     module, dh = derivation.module, derivation.reading.dh
     lines = [
-        ("robot", f"{dh.robot}, {dh.base_link} -> {dh.tip_link}, {counted(dh.dof, 'joint')}"),
+        ("robot", _robot(derivation)),
         ("task", _task(derivation) + _held(derivation)),
         ("geometry", derivation.geometry.words + _rounding(derivation)),
         ("solved", "; ".join(module.order)),
@@ -39,6 +39,20 @@ def summary(generation: Generation) -> str:
     lines += [("wrote", str(path)) for path in generation.files]
     lines.append(("time", f"{generation.seconds:.1f} s"))
     return table([(f"{name}:", text) for name, text in lines], indent="")
+
+
+def _robot(derivation: Derivation) -> str:
+    """The chain, and the branches beside it where it was taken for the robot's only arm."""
+    from ikgen.chains.arms import candidate_chains
+    from ikgen.chains.other_ends import other_ends
+
+    dh, tree = derivation.reading.dh, derivation.reading.tree
+    words = f"{dh.robot}, {dh.base_link} -> {dh.tip_link}, {counted(dh.dof, 'joint')}"
+    arms = candidate_chains(tree) if tree is not None else ()
+    if tree is None or [arm.tip for arm in arms] != [dh.tip_link]:
+        return words
+    others = other_ends(tree, arms)
+    return f"{words}; other branches end at {listed(others, 5)} (--tip)" if others else words
 
 
 def _motors(dh: DHChain) -> list[tuple[str, str]]:

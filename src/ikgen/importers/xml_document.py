@@ -17,6 +17,7 @@ from ikgen.model.joint_tree import Source
 
 __all__ = [
     "LARGEST_FILE",
+    "WEB_PAGE_HINT",
     "Element",
     "Place",
     "children",
@@ -33,6 +34,9 @@ Element = Any
 LARGEST_FILE = 16 * 2**20
 """The most bytes that a description may have; published ones have up to some 200 kB."""
 
+WEB_PAGE_HINT = "this is a web page: save the file itself, on GitHub by its 'Raw' button"
+
+_WEB_PAGE = re.compile(r"\s*(<!--.*?-->\s*)*(<!doctype\s+html|<html)\b", re.IGNORECASE | re.DOTALL)
 _BYTE_ORDER_MARKS = (
     (b"\xef\xbb\xbf", "utf-8-sig"),
     (b"\xff\xfe", "utf-16"),
@@ -193,7 +197,9 @@ def _check_document_type(root: Element, text: str, file: str) -> None:
             "<!DOCTYPE> declares entities or names a DTD",
             file=file,
             line=line_at(text, text.find("<!DOCTYPE")),
-            hint="a description needs no document type: remove it and write entities out",
+            hint=WEB_PAGE_HINT
+            if _WEB_PAGE.match(text)
+            else "a description needs no document type: remove it and write entities out",
         )
 
 
@@ -205,6 +211,8 @@ def line_at(text: str, position: int) -> int:
 def _syntax_hint(text: str, message: str) -> str:
     if text.startswith("version https://git-lfs"):
         return "this is a Git LFS pointer: run 'git lfs pull'"
+    if _WEB_PAGE.match(text):
+        return WEB_PAGE_HINT
     hints = (hint for key, hint in _SYNTAX_HINTS if key in message)
     return conflict_or(text, next(hints, "correct the XML at this line"))
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-__all__ = ["counted", "listed"]
+__all__ = ["counted", "listed", "with_article"]
 
 
 def counted(count: int, thing: str) -> str:
@@ -19,3 +19,8 @@ def listed(names: Sequence[str], most: int = 10) -> str:
     """Names, cut where they are many."""
     shown = ", ".join(names[:most])
     return shown if len(names) <= most else f"{shown} and {len(names) - most} more"
+
+
+def with_article(word: str) -> str:
+    """`a list`, `an int`: of words that are spoken as they are written."""
+    return f"{'an' if word[:1].lower() in tuple('aeiou') else 'a'} {word}"

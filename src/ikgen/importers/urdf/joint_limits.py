@@ -14,6 +14,12 @@ UNLIMITED = Limits(-math.inf, math.inf)
 DEGREES_ABOVE = 4.0 * math.pi + 1e-6
 """Two turns either way (rad): files that state more than that mean degrees, or no limit at all."""
 
+_TURNS = 16.0 * math.pi
+"""Eight turns either way (rad): wrists that turn several times stay below."""
+
+_ROUND = 0.5
+"""What limits in degrees are multiples of, and those of such wrists in rad hardly are."""
+
 _NO_LIMIT_FROM = 1e3
 """A range (rad) that stands for none: files write 999999, and 159 turns reach every angle."""
 
@@ -68,7 +74,14 @@ def turning_limits(low: float, high: float) -> tuple[Limits, tuple[str, ...]]:
         known = min(-low, high) >= _NO_LIMIT_FROM
         note = f"limits {low:g} to {high:g} rad: taken as unlimited"
         return UNLIMITED, () if known else (note,)
-    if max(abs(low), abs(high)) > DEGREES_ABOVE:
+    if _like_degrees(low, high):
         note = f"limits {low:g} to {high:g} rad look like degrees: kept as they are"
         return Limits(low, high), (note,)
     return Limits(low, high), ()
+
+
+def _like_degrees(low: float, high: float) -> bool:
+    """Whether limits are beyond two turns, and so round or so far that they can hardly be in rad."""
+    farthest = max(abs(low), abs(high))
+    rounded = low % _ROUND == 0.0 == high % _ROUND
+    return farthest > _TURNS or (farthest > DEGREES_ABOVE and rounded)

@@ -15,6 +15,7 @@ from ikgen.importers.urdf.joint_list import read_joints, unique_names
 from ikgen.importers.urdf.millimetres import note_millimetres
 from ikgen.importers.urdf.topology import check_joints, find_roots
 from ikgen.importers.xml_document import (
+    WEB_PAGE_HINT,
     Element,
     Place,
     children,
@@ -25,10 +26,17 @@ from ikgen.importers.xml_document import (
 )
 from ikgen.model.joint_tree import JointTree, Source
 
-__all__ = ["changed_tree", "parse_urdf", "read"]
+__all__ = ["NO_LINKS", "changed_tree", "parse_urdf", "read"]
+
+NO_LINKS = "the robot has no links"
 
 _XACRO_HINT = "this is a xacro file: rename it to .urdf.xacro, or expand it with xacro first"
-_OTHER_FORMATS = {"sdf": "SDF", "mujoco": "MuJoCo MJCF", "COLLADA": "COLLADA", "launch": "launch"}
+_OTHER_FORMATS = {
+    "sdf": "an SDF file",
+    "mujoco": "a MuJoCo MJCF file",
+    "COLLADA": "a COLLADA file",
+    "launch": "a launch file",
+}
 
 
 def read(path: Path, *, arguments: Mapping[str, str], package_paths: Sequence[Path]) -> JointTree:
@@ -114,7 +122,8 @@ def _check_root(root: Element, place: Place) -> None:
     tag = local_name(root)
     if tag != "robot":
         other = _OTHER_FORMATS.get(tag)
-        hint = f"this looks like a {other} file; ikgen reads URDF and xacro" if other else ""
+        hint = f"this looks like {other}; ikgen reads URDF and xacro" if other else ""
+        hint = WEB_PAGE_HINT if tag.lower() == "html" else hint
         raise place.error(
             root, f"the document is <{tag}>, not <robot>", hint or "a URDF's root is <robot>"
         )
@@ -136,5 +145,5 @@ def _robot_name(root: Element, path: Path, place: Place) -> str:
 def _link_names(root: Element, place: Place) -> tuple[str, ...]:
     links = unique_names(list(children(root, "link")), "link", place)
     if not links:
-        raise place.error(root, "the robot has no links", "check that the file is complete")
+        raise place.error(root, NO_LINKS, "check that the file is complete")
     return links

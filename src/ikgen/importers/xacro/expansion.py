@@ -7,12 +7,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ikgen.errors import IkgenError
+from ikgen.errors import BadDescriptionError, IkgenError
 from ikgen.importers.packages import PACKAGE_URL, PackageFinder
-from ikgen.importers.urdf.urdf_tree import parse_urdf
+from ikgen.importers.urdf.urdf_tree import NO_LINKS, parse_urdf
 from ikgen.importers.xacro.expansion_errors import explain
 from ikgen.importers.xacro.expansion_session import Arguments, Session
-from ikgen.importers.xml_document import Element, children, parse_xml, read_text
+from ikgen.importers.xml_document import Element, children, local_name, parse_xml, read_text
+from ikgen.model.counted import listed
 from ikgen.model.joint_tree import JointTree
 
 __all__ = ["Expansion", "expand", "read"]
@@ -23,13 +24,15 @@ _ARGUMENT = re.compile(r"\$\(arg\s+([^)\s]+)\s*\)")
 @dataclass(frozen=True, slots=True)
 class Expansion:
     """A xacro file's URDF text, the files read for it (absolute, itself first), the URLs of those
-    that another package holds, the environment variables that it asked for, and warnings."""
+    that another package holds, the environment variables that it asked for, warnings, and the names of the
+    macros that it defines."""
 
     text: str
     dependencies: tuple[Path, ...]
     package_urls: tuple[tuple[Path, str], ...] = ()
     warnings: tuple[str, ...] = ()
     environment: tuple[tuple[str, str | None], ...] = ()
+    macros: tuple[str, ...] = ()
 
 
 def read(
@@ -44,16 +47,24 @@ def read(
     Raises `BadDescriptionError` naming the missing argument, package or include, with its place.
     """
     expansion = expand(path, arguments=arguments, package_paths=package_paths, trust=trust)
-    return parse_urdf(
-        expansion.text,
-        path=path,
-        kind="xacro",
-        dependencies=expansion.dependencies,
-        package_urls=expansion.package_urls,
-        arguments=arguments,
-        warnings=expansion.warnings,
-        environment=expansion.environment,
-    )
+    try:
+        return parse_urdf(
+            expansion.text,
+            path=path,
+            kind="xacro",
+            dependencies=expansion.dependencies,
+            package_urls=expansion.package_urls,
+            arguments=arguments,
+            warnings=expansion.warnings,
+            environment=expansion.environment,
+        )
+    except BadDescriptionError as error:
+        if error.problem == NO_LINKS and expansion.macros:
+            names, calls = listed(expansion.macros), f"<xacro:{expansion.macros[0]} ...>"
+            error.hint = (
+                f"the file only defines macros ({names}): give the file that calls them, by {calls}"
+            )
+        raise
 
 
 def expand(
@@ -96,6 +107,7 @@ def expand(
         tuple(urls.items()),
         tuple(warnings),
         tuple(sorted(session.environment.items())),
+        tuple(e.get("name") for e in root.iter() if local_name(e) == "macro" and e.get("name")),
     )
 
 

@@ -45,10 +45,13 @@ class Evaluator:
             tree = self.parsed.get(text)
             if tree is None:
                 tree = self.parsed[text] = _parse(text)
-            return _Scope(self.budget, names).value(tree)
+            value = _Scope(self.budget, names).value(tree)
         except RefusedExpressionError as refusal:
             refusal.expression = refusal.expression or text
             raise
+        if callable(value):  # no value of a description: a property was meant that is not there
+            raise NameError(f"'{text.strip()}' is a function, not a property of the file")
+        return value
 
 
 def _parse(text: str) -> ast.expr:

@@ -9,6 +9,7 @@ from typing import Any
 
 from ikgen.importers.xacro.bounded_values import LARGEST, OPERATORS, checked, gathered
 from ikgen.importers.xacro.refusals import RefusedExpressionError
+from ikgen.model.counted import with_article
 
 __all__ = ["MATH", "PYTHON", "tokenize"]
 
@@ -60,7 +61,7 @@ def _type(value: Any) -> type:
     for known in (bool, int, float, complex, str, list, dict, tuple, set):
         if isinstance(value, known):
             return known
-    raise RefusedExpressionError(f"asks for the type of a {type(value).__name__}")
+    raise RefusedExpressionError(f"asks for the type of {with_article(type(value).__name__)}")
 
 
 def _factorial(n: int) -> int:

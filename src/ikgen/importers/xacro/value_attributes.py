@@ -7,6 +7,7 @@ from typing import Any
 
 from ikgen.importers.xacro.bounded_values import LARGEST, size_of
 from ikgen.importers.xacro.refusals import RefusedExpressionError
+from ikgen.model.counted import with_article
 
 __all__ = ["attribute_of"]
 
@@ -53,7 +54,9 @@ def attribute_of(value: Any, name: str) -> Any:
         if hasattr(type(value), "__getattr__"):
             return value[name]
         raise AttributeError(f"'dict' object has no attribute '{name}'")
-    raise RefusedExpressionError(f"reaches for the attribute '{name}' of a {type(value).__name__}")
+    raise RefusedExpressionError(
+        f"reaches for the attribute '{name}' of {with_article(type(value).__name__)}"
+    )
 
 
 def _join(separator: str, parts: Any) -> str:
