@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 
 import pytest
-from tests.support.redundant_arms import SHOULDER_ELBOW_WRIST, serial_urdf
+from tests.support.redundant_arms import SHOULDER_ELBOW_WRIST, TORSO, Joint, serial_urdf
 
 from ikgen.cli.main import run
 
@@ -67,3 +67,34 @@ def test_what_default_values_answer_is_said(
     )
     said = re.search(held, line)
     assert said and (said[2] == "; search tries other values") is (int(said[1]) < 20)
+
+
+def solutions(
+    folder: Path, capsys: pytest.CaptureFixture[str], joints: tuple[Joint, ...], *options: str
+) -> str:
+    """What a summary says of the solutions of an arm of these joints, with a few samples."""
+    path = folder / "arm.urdf"
+    path.write_text(serial_urdf("arm", joints))
+    command = ["from-urdf", str(path), "-o", str(folder), "--samples", "40", *options]
+    assert run(command) == 0
+    (line,) = (x for x in capsys.readouterr().out.splitlines() if x.startswith("solutions:"))
+    return line
+
+
+def test_a_search_over_several_is_not_said_to_be_quick(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    held = ("--free", "torso=0.4", "--free", "shoulder_pitch=2")
+    line = solutions(tmp_path, capsys, (TORSO, *SHOULDER_ELBOW_WRIST), *held)
+    assert line.endswith("; search tries a grid of other values (seconds a pose in Python)")
+
+
+def test_no_search_is_proposed_where_other_values_change_nothing(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """An elbow that is pinned is never held: no value of another joint reaches a pose that is drawn."""
+    pinned = tuple(
+        (*one[:4], (1.0, 1.0) if one[0] == "elbow" else one[4]) for one in SHOULDER_ELBOW_WRIST
+    )
+    line = solutions(tmp_path, capsys, pinned)
+    assert "by default" in line and "search" not in line

@@ -129,8 +129,21 @@ def _by_default(generation: Generation, report: VerificationReport) -> str:
     values = generation.derivation.module.free_defaults
     held = zip(generation.derivation.reading.dh.held, values, strict=True)
     named = ", ".join(f"{name} = {value:.3g}" for name, value in held)
-    more = "; search tries other values" if 2 * answered < poses else ""
+    more = _elsewhere(generation.derivation) if 2 * answered < poses else ""
     return f"; by default ({named}) {answered} of {poses} of these have any{more}"
+
+
+def _elsewhere(derivation: Derivation) -> str:
+    """What finds rows where the defaults have none; "" where no held value could change that."""
+    from ikgen.generation.idle_solved import idle_solved
+    from ikgen.kinematics.idle_joints import idle_joints
+
+    dh = derivation.reading.dh
+    if idle_solved(dh, derivation.task) or set(dh.held) <= set(idle_joints(dh)):
+        return ""
+    if len(dh.held) == 1:
+        return "; search tries other values"
+    return "; search tries a grid of other values (seconds a pose in Python)"
 
 
 def _verified(name: str, report: VerificationReport) -> str:
