@@ -36,6 +36,11 @@ MEETING = [
 ]  # fmt: skip
 
 
+ELBOW = [
+    ("0 0 0.3", "0 0 0"), ("0 0 0", "-1.5708 0 0"), ("0 -0.3 0", "1.5708 0 0"), ("0.05 0 0", "-1.5708 0 0"),
+    ("-0.05 -0.3 0", "1.5708 0 0"), ("0 0 0", "-1.5708 0 0"), ("0 0 0", "1.5708 0 0"),
+]  # fmt: skip
+
 TELESCOPE = [
     ("0 0 0.3", "0 0 0"), ("0.1 0 0.2", "-1.5708 0 0"), ("0.1 0 0", "0 1.571 0"), ("0 0 0.2", "0 0 0"),
     ("0 0 0.1", "1.5708 0 0"), ("0 0 0.1", "-1.5708 0 0"), ("0 0.02 0.1", "1.5708 0 0"),
@@ -104,3 +109,34 @@ def test_a_slide_s_elimination_does_not_hide_what_is_singular(
     arm, runner = arm_of(derivation), runner_of(derivation, language, tmp_path)
     index, found, _ = runner.solve_many(arm.oracle.forward(q)).flat()
     assert sorted(set(index[found_at(found, q[index]) < 1e-6].tolist())) == [0, 1]
+
+
+@BOTH
+def test_a_straight_wrist_that_steps_come_to_from_aside_is_a_continuum(
+    language: str, tmp_path: Path
+) -> None:
+    """Rounded, and beside a second singularity: what is solved has the wrist a little bent."""
+    limits = [
+        (-np.pi, np.pi),
+        (-2.0, 2.0),
+        (-np.pi, np.pi),
+        (-0.1, 2.6),
+        (-np.pi, np.pi),
+        (-2.0, 2.0),
+    ]
+    path = serial_urdf(
+        tmp_path / "arm.urdf", ELBOW, tip=("0 0 0.1", "0 0 0"), limit=[*limits, (-np.pi, np.pi)]
+    )
+    derivation, rng = derive(Request(path, free={"j2": None})), np.random.default_rng(0)
+    arm, runner = arm_of(derivation), runner_of(derivation, language, tmp_path)
+    q = rng.uniform(-2.0, 2.0, (300, 7))
+    q[:, 3] = rng.uniform(0.3, 2.0, 300)
+    q[:, 1] = rng.choice([0.0, 1e-3, 1e-6], 300) - 0.5 * q[:, 3]
+    q[0, :3] = 2.6174313018863327, -0.6620645166057497, 0.1233645964353749
+    q[0, 3:5] = 1.3244460644514895, -1.7564176110526317
+    q[:, 5] = 0.0
+    index, found, singular = runner.solve_many(
+        arm.oracle.forward(q), free=q[:, 2:3], seeds=q
+    ).flat()
+    assert singular[arm.sigma(found) < 1e-9].all()
+    assert np.unique(index[found_at(found, q[index]) < 1e-6]).tolist() == list(range(300))

@@ -35,8 +35,8 @@ template <class Arm> class CompensatedRows {
       double q[Arm::kDof];
       take(rows, lane, q);
       const int known = out.count;
-      Row::add(out, q, false);
-      all = all && out.count > known;  // else another may lie there
+      if (!SingularValue<Arm>::below(q, Arm::Policy::kSingularBelow)) Row::add(out, q, false);
+      all = all && out.count > known;  // else another may lie there, or others along a continuum
     }
     return all && out.count > 0;
   }
