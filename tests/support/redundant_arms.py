@@ -9,6 +9,8 @@ __all__ = [
     "NON_SPHERICAL_WRIST",
     "OFFSET_ELBOW",
     "SHOULDER_ELBOW_WRIST",
+    "STATION_ARM",
+    "STATION_INSPECTOR",
     "TORSO",
     "serial_urdf",
 ]
@@ -58,6 +60,30 @@ NON_SPHERICAL_WRIST: tuple[Joint, ...] = (
     ("hand", "revolute", "0 0.8660254037844387 -0.5", "0 0 0", (-3.1, 3.1)),
 )
 """Neighbouring axes meet, the last three not in one point: curved wrists of 60 degrees."""
+
+_BENDS = (-2.0, 2.0)
+STATION_INSPECTOR: tuple[Joint, ...] = (
+    ("pitch_1", "revolute", "1 0 0", "0 0 0.3", _BENDS),
+    ("yaw_1", "revolute", "0 1 0", "0 0 0.25", _BENDS),
+    ("roll_1", "revolute", "0 0 1", "0 0 0.4", (-3.1, 3.1)),
+    ("elbow", "revolute", "1 0 0", "0 0 4", (0.0, 3.0)),
+    ("roll_2", "revolute", "0 0 1", "0 0 4", (-3.1, 3.1)),
+    ("yaw_2", "revolute", "0 1 0", "0 0 0.4", _BENDS),
+    ("pitch_2", "revolute", "1 0 0", "0 0 0.25", _BENDS),
+)
+"""The same from either end, as arms that walk over a space station, with offsets between all axes."""
+
+_ROUND = (-4.71, 4.71)
+STATION_ARM: tuple[Joint, ...] = (
+    ("roll_1", "revolute", "0 0 1", "0 0 0.38", _ROUND),
+    ("yaw_1", "revolute", "0 1 0", "0 0 0.63", _ROUND),
+    ("pitch_1", "revolute", "1 0 0", "0 0.63 0", _ROUND),
+    ("elbow", "revolute", "1 0 0", "0.5 0 6.9", _ROUND),
+    ("pitch_2", "revolute", "1 0 0", "0.5 0 6.9", _ROUND),
+    ("yaw_2", "revolute", "0 1 0", "0 0.63 0", _ROUND),
+    ("roll_2", "revolute", "0 0 1", "0 0 0.63", _ROUND),
+)
+"""Three parallel axes in the middle of long links."""
 
 TORSO: Joint = ("torso", "prismatic", "0 0 1", "0 0 0.5", (0.0, 0.4))
 

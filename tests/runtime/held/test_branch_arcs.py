@@ -83,6 +83,14 @@ def test_there_is_no_fold_on_the_other_side_nor_between_rows_of_one_branch() -> 
     assert not curves.folds(np.array([-1.0, 1.0]))[1].any()
 
 
+def test_there_is_none_where_the_curve_has_no_direction() -> None:
+    """Of an arm stretched along its aim, whose joints all move it one way, to the last digit."""
+    q, there = np.zeros((1, 3)), np.array([[0.1, 0.1, 0.5]])
+    T = forward(planar().chain, q)[0]
+    curve = Arcs(planar(), T, True, q, q[:, 0].copy(), there, there[:, 0].copy())
+    assert not curve.folds(np.ones(1))[1].any()
+
+
 def test_rows_that_touch_are_at_their_fold() -> None:
     q = row(turn_back(1.0) - 1e-15, 1.0)
     at, good = arcs(planar(), (q, q)).folds(np.ones(1))

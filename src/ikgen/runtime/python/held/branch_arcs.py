@@ -15,7 +15,7 @@ from ikgen.runtime.python.arm.limit_margins import outside
 from ikgen.runtime.python.arm.solved_arm import Arm
 from ikgen.runtime.python.arrays.array_types import Array, Flags
 from ikgen.runtime.python.newton.arm_newton import linearized
-from ikgen.runtime.python.newton.refinement import errors_and_slopes
+from ikgen.runtime.python.newton.refinement import errors_and_slopes, of_normal
 from ikgen.runtime.python.rows.row_links import differences
 
 __all__ = ["Arcs", "Points"]
@@ -26,7 +26,7 @@ _FAR = 1.0  # rad or m by which steps may correct what a point's neighbour foret
 _ARRIVED = 1e-9
 _STEPS = 10
 _MOST = 40
-_LEAST = 1e-300  # so that normal equations are never singular
+_LEAST = 1e-300  # of what is divided by
 
 
 @dataclass(frozen=True)
@@ -169,7 +169,7 @@ class Arcs:
         A = turned @ slope + self._unit[:, :, None] * self._unit[:, None, :]
         wanted = (turned @ error[:, :, None])[:, :, 0] + self._unit * left[:, None]
         both = np.stack([wanted, self._unit * self._length[:, None]], axis=2)
-        both = np.linalg.solve(A + _LEAST * np.eye(A.shape[1]), both)
+        both = of_normal(np.linalg.solve, A, both)
         return both[:, :, 0], both[:, :, 1]
 
     def _missed(self, q: Array, held: Array) -> tuple[Array, Array]:
