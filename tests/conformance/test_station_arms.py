@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from tests.support.both_languages import Both, in_both
-from tests.support.redundant_arms import STATION_INSPECTOR, Joint, serial_urdf
+from tests.support.redundant_arms import STATION_ARM, STATION_INSPECTOR, Joint, serial_urdf
 from tests.support.solving import NO_COMPILER
 
 from ikgen.generation.derive import derive
@@ -42,3 +42,17 @@ def test_a_curve_without_a_direction_is_given_up(tmp_path: Path) -> None:
     own, other = intervals(both, (*q, -1.2856193821576292, -0.8283112918618798, -0.277020301))
     assert len(own) == len(other) > 2
     np.testing.assert_allclose(own, other, atol=1e-8)
+
+
+def test_rows_that_move_far_before_they_meet_end_there(tmp_path: Path) -> None:
+    """Some by more than a radian over a cell of the range: each pair that meets has one end, and so have
+    all here."""
+    both = station_arm(STATION_ARM, "roll_1", tmp_path)
+    for q in (
+        (1.08524993, -2.37264163, 0.49561850, 1.62388383, -2.9097176, 4.61925790, 2.32164830),
+        (-0.66444776, 1.74461782, -3.23721455, -1.0771031, -4.5231624, -3.89893767, -2.6710073),
+    ):
+        own, other = intervals(both, q)
+        assert own.shape == other.shape and np.abs(own - other).max() < 1e-9
+        for found in (own, other):
+            assert np.ptp(found[:, :2].reshape(8, -1), axis=0).max() < 1e-9

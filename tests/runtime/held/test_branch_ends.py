@@ -169,6 +169,20 @@ def test_a_limit_may_come_before_the_fold(guarded: bool, monkeypatch: pytest.Mon
     assert off(end.inner) <= 0.25 < off(end.outer) and branches.rounds <= 14
 
 
+@pytest.mark.parametrize("ends", [True, False])
+def test_a_row_may_move_as_far_as_it_likes_before_its_fold(
+    ends: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where its lane has none beyond: where that has one, it is another branch's."""
+    row: Function = lambda h: 9.0 * math.sqrt(abs(FOLD - h))  # noqa: E731
+    branches = Branches([(row, lambda h: -1.0, folding if ends else lambda h: 1.0)])
+    held, off = [0.0, FOLD - 0.1, FOLD + 0.4], [[0], [-1]]
+    joint: Any = SimpleNamespace(arm=branches.arm, margins_tell=True, guarded=True)
+    end = branch_end(joint, tracks_of(branches, held, off), np.array(off), (1, 0), (2, -1))
+    found(branches, monkeypatch, end)
+    assert (end.inner == pytest.approx(FOLD, abs=1e-10)) == ends
+
+
 def tracks_of(branches: Branches, held: list[float], links: list[list[int]]) -> Any:
     rows = branches.at(None, None, np.array(held))
     off = branches.outside() - branches.tolerance

@@ -30,6 +30,7 @@ template <class Arm> struct BranchEnd {
             int lane_ahead, const Sample* behind, int lane_behind) noexcept
       : inner(a.held), outer(b.held), lane(lane_a), at_fold(lane_b < 0) {
     stays = Sample::kMarginsTell && (at_fold || lane_b == lane_a);
+    if (Sample::kMarginsTell && at_fold && !b.real[lane]) reach = kInfinity;
     a.row(lane_a, q);
     if (!Sample::kMarginsTell) {
       go_to(at_fold ? a : b, at_fold ? met(a, links) : lane_b);
@@ -59,6 +60,7 @@ template <class Arm> struct BranchEnd {
  private:
   static constexpr double kClose = 1e-8;  // error of a row that has lost digits by a fold alone
   bool stays;           // in its lane, however near others come
+  double reach = 1.0;   // from where the row was last seen; any where its lane ends: beside folds rows move far
   bool halves = false;  // steps are halves, and rows tell, not margins
   bool goes = false;    // to the row `there` at the value `then`
   double there[Arm::kDof], then;
@@ -72,7 +74,7 @@ template <class Arm> struct BranchEnd {
     for (int step = 0; step < kSteps && std::abs(outer - inner) > kEnough; ++step) {
       const Sample s = sweep.at(trial(step), at_fold && !halves);
       const int row = row_in(s);
-      const bool seen = row >= 0 && s.real[row] && s.distance(row, q) < 1.0, good = seen && s.off[row] <= 0.0;
+      const bool seen = row >= 0 && s.real[row] && s.distance(row, q) < reach, good = seen && s.off[row] <= 0.0;
       const double remote = good ? outer : inner;
       (good ? inner : outer) = s.held;
       if (at_fold && seen && !good) {  // a limit comes before the fold

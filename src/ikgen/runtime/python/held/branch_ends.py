@@ -31,9 +31,10 @@ class BranchEnd:
     """A value of the held joint at which the row `lane`, `q`, is inside, and one at which it is not.
 
     `known`: values of the held joint near by, each with what is negative inside, positive outside and
-    smooth between, the nearest last. `stays`: in its lane, however near others come. `there`: where
-    margins do not tell, the branch's row at the value `then` beyond, or before a fold the one that it
-    meets; None where there is none."""
+    smooth between, the nearest last. `stays`: in its lane, however near others come; `reach`: rad or m
+    that the row may be from where it was last seen, any where its lane ends: beside folds rows move as far
+    as they like. `there`: where margins do not tell, the branch's row at the value `then` beyond, or before
+    a fold the one that it meets; None where there is none."""
 
     inner: float
     outer: float
@@ -44,6 +45,7 @@ class BranchEnd:
     stays: bool
     there: Array | None = None
     then: float = 0.0
+    reach: float = _REACH
 
     @property
     def surely(self) -> float:
@@ -64,6 +66,7 @@ def branch_end(
     (at, row), (to, other) = inside, beyond
     at_fold, known = other < 0, list[_Known]()
     stays = joint.guarded if at_fold else joint.margins_tell and other == row
+    reach = inf if at_fold and joint.margins_tell and not rows.real[to, row] else _REACH
     there, then = None, to
     if joint.margins_tell:
         known = _known(tracks, before, inside, beyond)
@@ -72,7 +75,7 @@ def branch_end(
     if not joint.margins_tell and other >= 0:
         there = rows.q[then, other]
     a, b, c = (float(rows.held[k]) for k in (at, to, then))
-    return BranchEnd(a, b, rows.q[at, row], row, known, at_fold, stays, there, c)
+    return BranchEnd(a, b, rows.q[at, row], row, known, at_fold, stays, there, c, reach)
 
 
 def _known(
@@ -128,7 +131,7 @@ def find_ends(joint: HeldJoint, T: Array, ends: list[BranchEnd], limits: bool) -
         gap = np.where(rows.real, gap, inf)
         for k, e in enumerate(going):
             row = e.lane if e.stays else int(gap[k].argmin())
-            seen = bool(gap[k, row] < _REACH)
+            seen = bool(gap[k, row] < e.reach)
             here = float(off[k, row]) - joint.arm.policy.limit_tolerance
             value = here if seen else None
             if e.at_fold:
