@@ -14,6 +14,7 @@ template <class Arm> struct HeldSweep {
   using Links = BranchLinks<Arm>;
   using Beside = BesideCell<Arm>;
   static constexpr int kCells = Arm::kGuarded ? 64 : 512;
+  static constexpr double kFixed = 1e-9;  // a joint with no more range is pinned, and has one cell, which is not halved
 
   const Eigen::Isometry3d& pose;
   JointBounds<Arm> bounds;
@@ -29,16 +30,17 @@ template <class Arm> struct HeldSweep {
   template <class Visit> void run(Visit& visit) const noexcept {
     Sample window[4];  // before, lower end, upper end, after; a ring
     Links links[4];    // from each to the next
+    const int cells = fixed() ? 1 : kCells;
     window[1] = at(low);
-    window[2] = at(value(1));
+    window[2] = at(value(1, cells));
     links[1] = Links(window[1], window[2]);
     visit.first(window[1]);
-    for (int k = 0; k < kCells; ++k) {
+    for (int k = 0; k < cells; ++k) {
       const Sample &a = window[(k + 1) % 4], &b = window[(k + 2) % 4];
       const Beside before = {k > 0 ? &window[k % 4] : nullptr, &links[k % 4]};
       Beside after = {nullptr, nullptr};
-      if (k + 2 <= kCells) {
-        window[(k + 3) % 4] = at(value(k + 2));
+      if (k + 2 <= cells) {
+        window[(k + 3) % 4] = at(value(k + 2, cells));
         links[(k + 2) % 4] = Links(b, window[(k + 3) % 4]);
         after = {&window[(k + 3) % 4], &links[(k + 2) % 4]};
       }
@@ -47,7 +49,9 @@ template <class Arm> struct HeldSweep {
   }
 
  private:
-  double value(int k) const noexcept { return k == kCells ? high : low + (high - low) * k / kCells; }
+  bool fixed() const noexcept { return !(high - low > kFixed); }
+
+  double value(int k, int cells) const noexcept { return k == cells ? high : low + (high - low) * k / cells; }
 
   // The range of the held joint.
   void hold_joint(bool limits) noexcept {
@@ -77,7 +81,8 @@ template <class Arm> struct HeldSweep {
   template <class Visit>
   void cell(const Beside& before, const Sample& a, const Sample& b, const Links& links, const Beside& after,
             Visit& visit) const noexcept {
-    if (!HeldDoubts<Arm>{bounds, high - low, before, after, a, b, links}.any()) return visit.cell(before, a, b, links, after);
+    if (fixed() || !HeldDoubts<Arm>{bounds, high - low, before, after, a, b, links}.any())
+      return visit.cell(before, a, b, links, after);
     const Sample middle = at(0.5 * (a.held + b.held));
     const Links up(a, middle), on(middle, b);
     cell(before, a, middle, up, {&b, &on}, visit);

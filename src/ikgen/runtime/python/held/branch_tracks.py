@@ -21,6 +21,9 @@ __all__ = ["LEAST", "Tracks", "tracked"]
 
 _CELLS = 64  # cells to begin with
 _UNGUARDED_CELLS = 512  # cells to begin with where nothing tells of folds between samples
+_FIXED = (
+    1e-9  # rad or m: a joint with no more range is pinned, and has one cell, which is not halved
+)
 _SAFETY = 4.0  # bounds of what second differences tell are taken that many times
 _SMOOTH = 0.05  # rad or m by which a row may bend between samples
 _ROUND_OFF = 1e-12  # rad or m, of joint values
@@ -42,14 +45,14 @@ class Tracks:
 def tracked(joint: HeldJoint, T: Array, low: float, high: float, limits: bool) -> Tracks:
     """Rows over a range, close enough together that each cell between them is understood."""
     arm = joint.arm
-    cells = _CELLS if joint.guarded else _UNGUARDED_CELLS
+    fixed = not high - low > _FIXED
+    cells = 1 if fixed else _CELLS if joint.guarded else _UNGUARDED_CELLS
     rows = rows_at(joint, T, np.linspace(low, high, cells + 1))
     while True:
         following = linked_rows(arm, rows.q, rows.real, joint.guarded)
-        doubtful = _doubtful(joint, rows, following, limits)
         held = rows.held
-        middle = 0.5 * (held[1:] + held[:-1])[doubtful]
-        if not len(middle):
+        middle = 0.5 * (held[1:] + held[:-1])
+        if fixed or not len(middle := middle[_doubtful(joint, rows, following, limits)]):
             off = outside(arm, rows.q, limits) - arm.policy.limit_tolerance
             return Tracks(rows, following, off, rows.real & (off <= 0.0))
         rows = merged_rows(rows, rows_at(joint, T, middle))
