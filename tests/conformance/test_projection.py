@@ -139,19 +139,37 @@ def test_what_is_no_pose_stays_invalid(arm: ModuleType) -> None:
     assert arm.solve(np.full((4, 4), np.nan), project=True).status == "INVALID"
 
 
-@pytest.mark.parametrize("task", sampled(["pose", "position-pitch"], ["pose"]))
-def test_the_header_projects_alike(task: str, tmp_path: Path) -> None:
-    arm, header = emitted(task, tmp_path)
-    (tmp_path / "arm_ik.hpp").write_text(header)
-    text = DRIVER.replace("HEADER", str(tmp_path / "arm_ik.hpp"))
+def by_header(task: str, header: str, poses: Array, folder: Path) -> list[list[float]]:
+    """Of each pose the status, then rows with what they are off."""
+    (folder / "arm_ik.hpp").write_text(header)
+    text = DRIVER.replace("HEADER", str(folder / "arm_ik.hpp"))
     text = text.replace(
         "int main", f"namespace ik = projected_{task.replace('-', '_')}_ik;\nint main"
     )
-    program = compiled_header(text, tmp_path)
+    lines = feed(compiled_header(text, folder), [float(x) for T in poses for x in T.T.ravel()])
+    assert len(lines) == len(poses)
+    return lines
+
+
+def test_rows_beside_limits_are_no_farther_than_those(tmp_path: Path) -> None:
+    """The arm on two limits, and a pose with one of these joints a little beyond: few starts lead there."""
+    arm, header = emitted("position-pitch", tmp_path)
+    inside = np.array([0.719038452, -1.5, -1.207215037, -1.7])
+    assert (inside[[1, 3]] == arm.LOWER[[1, 3]]).all()
+    T = arm.forward(inside - np.array([0.0, 6.11e-5, 0.0, 0.0]))
+    assert arm.solve(T).status == "LIMITS"
+    (numbers,) = by_header("position-pitch", header, T[None], tmp_path)
+    other = np.reshape(numbers[1:], (-1, arm.DOF + 2))[:, : arm.DOF]
+    for q in (arm.solve(T, project=True).q, other):
+        assert len(q) and cost(arm, q, T).max() <= cost(arm, inside, T)
+
+
+@pytest.mark.parametrize("task", sampled(["pose", "position-pitch"], ["pose"]))
+def test_the_header_projects_alike(task: str, tmp_path: Path) -> None:
+    arm, header = emitted(task, tmp_path)
     poses = displaced(arm, 12)[1]
     poses = np.concatenate([poses, arm.forward(np.zeros((1, arm.DOF)))])
-    lines = feed(program, [float(x) for T in poses for x in T.T.ravel()])
-    assert len(lines) == len(poses)
+    lines = by_header(task, header, poses, tmp_path)
     for T, (status, *numbers) in zip(poses, lines, strict=True):
         rows = np.reshape(numbers, (-1, arm.DOF + 2))
         found = arm.solve(T, project=True)

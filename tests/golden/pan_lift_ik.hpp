@@ -2112,6 +2112,18 @@ template <class Arm> struct CarefulRows {
     for (const int lane : Arm::kLaneOfRow)
       if (unreal(lane)) starts.take({only[0], lane, true}, ends.at(0, lane), false, aim, out);
   }
+
+  static void take_beside(const Aim& aim, const double* q0, const Options& options, Starts& starts,
+                          Places& out) noexcept {
+    constexpr std::size_t count = Arm::kBesides;
+    std::array<Rows, count> rows;
+    for (std::size_t k = 0; k < count; ++k) find_lanes(displaced(aim.pose, Arm::kBeside[k]), q0, options, rows[k]);
+    const LaneEnds<Arm, count> ends(rows, aim, options, kReal);
+    for (std::size_t k = 0; k < count; ++k)
+      for (const int lane : Arm::kLaneOfRow)
+        if (rows[k].has(lane, kReal))
+          starts.take({rows[k], lane, starts.marked(rows[k], lane)}, ends.at(k, lane), true, aim, out);
+  }
 };
 
 // --- joint bounds --------------------------------------------------------------------------------
@@ -2991,13 +3003,14 @@ template <class Arm, template <class> class Way> struct Projection {
   using Options = typename Arm::Options;
   using Solutions = typename Arm::Solutions;
   using Chords = PoseChords<Arm>;
+  using Nearest = NearestRow<Arm>;
 
   [[gnu::cold, gnu::noinline]] static void apply(const Eigen::Isometry3d& pose, const GivenOptions<Arm>& given,
                                                  Solutions& out) noexcept {
     Eigen::Isometry3d target = pose;
     if (!given.valid || !PoseReading<Arm>::clean(target)) return;
     const double* t = target.matrix().data();
-    if (out.count == 0) solve_nearest(t, given.options, out);
+    if (out.count == 0) solve_nearest(target, given.options, out);
     for (int k = 0; k < out.count; ++k) Chords::off_by(out.q.data()[k].data(), t, out.off.data()[k].data());
   }
 
@@ -3014,9 +3027,24 @@ template <class Arm, template <class> class Way> struct Projection {
     return true;
   }
 
-  static void solve_nearest(const double* t, Options options, Solutions& out) noexcept {
+  static void take_beside(const Eigen::Isometry3d& target, Options options, double least, double* q) noexcept {
+    Solutions beyond;
+    options.limits = false;
+    Way<Arm>::template solve<1>(&target, options, &beyond);
+    for (int k = 0; k < beyond.count; ++k) {
+      double* row = beyond.q.data()[k].data();
+      Nearest::put_inside(row);
+      const double cost = Nearest::descend(target.matrix().data(), true, Nearest::kRoundOff, row);
+      if (!(cost < least)) continue;
+      least = cost;
+      std::copy_n(row, Arm::kDof, q);
+    }
+  }
+
+  static void solve_nearest(const Eigen::Isometry3d& target, Options options, Solutions& out) noexcept {
     double q[Arm::kDof];
-    NearestRow<Arm>::find(t, options, options.limits, NearestRow<Arm>::kRoundOff, NearestRow<Arm>::kFirstSteps, q);
+    const double cost = Nearest::find(target.matrix().data(), options, options.limits, Nearest::kRoundOff, Nearest::kFirstSteps, q);
+    if (out.status == Arm::Status::Limits) take_beside(target, options, cost, q);
     Eigen::Isometry3d pose;
     by_columns(MotionChain<Arm>::forward(q), pose.matrix().data());
     HeldAim<Arm>::values(q, options.free);

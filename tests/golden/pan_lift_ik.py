@@ -2175,9 +2175,14 @@ _ROUND_OFF = 1e-16  # over what is least: a step that gains less ends the descen
 _STANDING = 1e-6  # over what is least and not 0: a step that gains less ends the descent
 
 
-def _nearest_row(arm: _Arm, T: Array, start: Row, limits: bool) -> Row:
+def _nearest_row(arm: _Arm, T: Array, start: Row, limits: bool, beyond: Array) -> Row:
     """The joint values whose pose is nearest to T (4, 4), held joints as in `start`."""
-    q = _nearest(arm, T[None], np.array([start]), limits, _ROUND_OFF, _FIRST_STEPS)
+    bounds = _step_bounds(arm, limits)
+    q = _begun(arm, T[None], np.array([start]), bounds, _ROUND_OFF, _FIRST_STEPS, _START_COUNT)
+    beside = np.clip(_turned_inside(arm, beyond), *bounds)
+    beside[:, list(arm.free)] = q[0, list(arm.free)]
+    q = np.concatenate([q, beside])
+    q = _least_of(1, *_descend_to(arm, T[None].repeat(len(q), axis=0), q, bounds, _ROUND_OFF), 1)
     best: Row = tuple(q[0].tolist())
     return best
 
@@ -2187,30 +2192,30 @@ def _nearest_rows(
 ) -> Array:
     """`_nearest_row` of poses T (k, 4, 4), each with its start (k, dof) and other `starts`, if `flat` along
     directions too in which the pose hardly moves."""
-    return _nearest(arm, T, start, limits, _STANDING, _FEW_STEPS, flat, starts)
+    bounds = _step_bounds(arm, limits)
+    begun = _begun(arm, T, start, bounds, _STANDING, _FEW_STEPS, starts)
+    aims = np.repeat(T, _FOLLOWED, axis=0)
+    q, cost = _descend_to(arm, aims, begun, bounds, _STANDING)
+    if flat:
+        rows = np.concatenate([q, begun])
+        q, cost = _descend_to(arm, np.tile(aims, (2, 1, 1)), rows, bounds, _STANDING, floor=_FINEST)
+        q, cost = (x.reshape(2, len(T), _FOLLOWED, -1).swapaxes(0, 1) for x in (q, cost))
+    return _least_of(len(T), q.reshape(-1, start.shape[1]), cost.reshape(-1), 1)
 
 
-def _nearest(
+def _begun(
     arm: _Arm,
     T: Array,
     start: Array,
-    limits: bool,
+    bounds: tuple[Array, Array],
     enough: float,
-    first: int,
-    flat: bool = False,
-    starts: int = _START_COUNT,
+    steps: int,
+    starts: int,
 ) -> Array:
-    bounds = _step_bounds(arm, limits)
+    """Of each pose where the steps of those of its starts are that come nearest to it."""
     q = np.concatenate([_projection_starts(arm, row, bounds, starts) for row in start])
-    ends = _descend_to(arm, np.repeat(T, len(q) // len(T), axis=0), q, bounds, enough, first)
-    begun = _least_of(len(T), *ends, _FOLLOWED)
-    aims = np.repeat(T, _FOLLOWED, axis=0)
-    q, cost = _descend_to(arm, aims, begun, bounds, enough)
-    if flat:
-        rows = np.concatenate([q, begun])
-        q, cost = _descend_to(arm, np.tile(aims, (2, 1, 1)), rows, bounds, enough, floor=_FINEST)
-        q, cost = (x.reshape(2, len(T), _FOLLOWED, -1).swapaxes(0, 1) for x in (q, cost))
-    return _least_of(len(T), q.reshape(-1, start.shape[1]), cost.reshape(-1), 1)
+    ends = _descend_to(arm, np.repeat(T, len(q) // len(T), axis=0), q, bounds, enough, steps)
+    return _least_of(len(T), *ends, _FOLLOWED)
 
 
 def _least_of(poses: int, q: Array, cost: Array, count: int) -> Array:
@@ -3016,7 +3021,7 @@ def _solutions_of(
     T, near, held = asked
     found = answer.rows
     if project and not found:
-        found = _projected(arm, asked, limits)
+        found = _projected(arm, asked, limits, answer)
     if not found:
         status = Status.LIMITS if answer.real else Status.UNREACHABLE
         return _no_solutions(len(arm.lower), status, _held_reason(arm, held, answer.real))
@@ -3040,11 +3045,13 @@ def _held_reason(arm: _Arm, held: Row, real: bool) -> str:
     return f"{what} with {values} held; other values may reach the pose: {tells}"
 
 
-def _projected(arm: _Arm, asked: _One, limits: bool) -> list[_Found]:
-    """Solutions of the nearest pose that the arm can take."""
+def _projected(arm: _Arm, asked: _One, limits: bool, answer: _Answer) -> list[_Found]:
+    """Solutions of the nearest pose that the arm can take, of one that is answered without rows."""
     T, near, _ = asked
     start = _asked(asked).starts(arm)[0]
-    row = _nearest_row(arm, np.array(T), tuple(start.tolist()), limits)
+    real = _fitting(arm, asked, False).rows if answer.real else []
+    beyond = np.array([q for q, _ in real]).reshape(-1, len(start))
+    row = _nearest_row(arm, np.array(T), tuple(start.tolist()), limits, beyond)
     pose: list[list[float]] = _forward(arm.chain, row).tolist()
     nearest = pose, near, tuple(_held_of(arm, np.array(row)).tolist())
     found = _fitting(arm, nearest, limits).rows

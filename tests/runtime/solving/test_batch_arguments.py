@@ -46,9 +46,10 @@ def test_the_row_of_the_nearest_pose_counts_where_the_closed_form_has_it_not(
     monkeypatch.setattr(pose_solving, "_fitting", fitting)
     monkeypatch.setattr(pose_solving, "nearest_row", lambda *_: tuple(ROW.tolist()))
     far = (translation(9.0, 0.0, 0.0) @ rotation([0.0, 0.0, 1.0], 0.3)).tolist()
-    found = _projected(arm, (far, None, ()), True)
+    none = Answer([], False)
+    found = _projected(arm, (far, None, ()), True, none)
     assert found == (rows if known else [*rows, (tuple(ROW.tolist()), False)])
     np.testing.assert_allclose(seen[0][0], forward(arm.chain, ROW), atol=1e-15)
     full = [(tuple((ROW + 0.1 * k).tolist()), False) for k in range(1, 9)]
     rows = full
-    assert _projected(arm, (far, None, ()), True) == full  # no more than the arm has
+    assert _projected(arm, (far, None, ()), True, none) == full  # no more than the arm has

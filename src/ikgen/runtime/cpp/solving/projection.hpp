@@ -15,6 +15,7 @@ template <class Arm, template <class> class Way> struct Projection {
   using Options = typename Arm::Options;
   using Solutions = typename Arm::Solutions;
   using Chords = PoseChords<Arm>;
+  using Nearest = NearestRow<Arm>;
 
   // Rows of the nearest pose where there is none of the pose, and by how much each row is off.
   [[gnu::cold, gnu::noinline]] static void apply(const Eigen::Isometry3d& pose, const GivenOptions<Arm>& given,
@@ -22,7 +23,7 @@ template <class Arm, template <class> class Way> struct Projection {
     Eigen::Isometry3d target = pose;
     if (!given.valid || !PoseReading<Arm>::clean(target)) return;
     const double* t = target.matrix().data();
-    if (out.count == 0) solve_nearest(t, given.options, out);
+    if (out.count == 0) solve_nearest(target, given.options, out);
     for (int k = 0; k < out.count; ++k) Chords::off_by(out.q.data()[k].data(), t, out.off.data()[k].data());
   }
 
@@ -39,9 +40,25 @@ template <class Arm, template <class> class Way> struct Projection {
     return true;
   }
 
-  static void solve_nearest(const double* t, Options options, Solutions& out) noexcept {
+  // A nearer row than q beside those that take the pose outside the limits, where no other start may lead.
+  static void take_beside(const Eigen::Isometry3d& target, Options options, double least, double* q) noexcept {
+    Solutions beyond;
+    options.limits = false;
+    Way<Arm>::template solve<1>(&target, options, &beyond);
+    for (int k = 0; k < beyond.count; ++k) {
+      double* row = beyond.q.data()[k].data();
+      Nearest::put_inside(row);
+      const double cost = Nearest::descend(target.matrix().data(), true, Nearest::kRoundOff, row);
+      if (!(cost < least)) continue;
+      least = cost;
+      std::copy_n(row, Arm::kDof, q);
+    }
+  }
+
+  static void solve_nearest(const Eigen::Isometry3d& target, Options options, Solutions& out) noexcept {
     double q[Arm::kDof];
-    NearestRow<Arm>::find(t, options, options.limits, NearestRow<Arm>::kRoundOff, NearestRow<Arm>::kFirstSteps, q);
+    const double cost = Nearest::find(target.matrix().data(), options, options.limits, Nearest::kRoundOff, Nearest::kFirstSteps, q);
+    if (out.status == Arm::Status::Limits) take_beside(target, options, cost, q);
     Eigen::Isometry3d pose;
     by_columns(MotionChain<Arm>::forward(q), pose.matrix().data());
     HeldAim<Arm>::values(q, options.free);

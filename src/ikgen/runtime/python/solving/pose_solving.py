@@ -78,7 +78,7 @@ def solutions_of(
     T, near, held = asked
     found = answer.rows
     if project and not found:
-        found = _projected(arm, asked, limits)
+        found = _projected(arm, asked, limits, answer)
     if not found:
         status = Status.LIMITS if answer.real else Status.UNREACHABLE
         return no_solutions(len(arm.lower), status, held_reason(arm, held, answer.real))
@@ -102,11 +102,13 @@ def held_reason(arm: Arm, held: Row, real: bool) -> str:
     return f"{what} with {values} held; other values may reach the pose: {tells}"
 
 
-def _projected(arm: Arm, asked: One, limits: bool) -> list[Found]:
-    """Solutions of the nearest pose that the arm can take."""
+def _projected(arm: Arm, asked: One, limits: bool, answer: Answer) -> list[Found]:
+    """Solutions of the nearest pose that the arm can take, of one that is answered without rows."""
     T, near, _ = asked
     start = _asked(asked).starts(arm)[0]
-    row = nearest_row(arm, np.array(T), tuple(start.tolist()), limits)
+    real = _fitting(arm, asked, False).rows if answer.real else []
+    beyond = np.array([q for q, _ in real]).reshape(-1, len(start))
+    row = nearest_row(arm, np.array(T), tuple(start.tolist()), limits, beyond)
     pose: list[list[float]] = forward(arm.chain, row).tolist()
     nearest = pose, near, tuple(held_of(arm, np.array(row)).tolist())
     found = _fitting(arm, nearest, limits).rows

@@ -13,6 +13,7 @@ import numpy as np
 
 from ikgen.runtime.python.arm.chain_kinematics import forward, tip_and_jacobian
 from ikgen.runtime.python.arm.entry_differences import entry_errors, entry_rows
+from ikgen.runtime.python.arm.limit_margins import turned_inside
 from ikgen.runtime.python.arm.solved_arm import Arm
 from ikgen.runtime.python.arm.task_interface import Task
 from ikgen.runtime.python.arrays.array_types import Array, Flags, Row
@@ -31,9 +32,15 @@ _ROUND_OFF = 1e-16  # over what is least: a step that gains less ends the descen
 _STANDING = 1e-6  # over what is least and not 0: a step that gains less ends the descent
 
 
-def nearest_row(arm: Arm, T: Array, start: Row, limits: bool) -> Row:
-    """The joint values whose pose is nearest to T (4, 4), held joints as in `start`."""
-    q = _nearest(arm, T[None], np.array([start]), limits, _ROUND_OFF, _FIRST_STEPS)
+def nearest_row(arm: Arm, T: Array, start: Row, limits: bool, beyond: Array) -> Row:
+    """The joint values whose pose is nearest to T (4, 4), held joints as in `start`. `beyond` (k, dof): the
+    rows that take it outside the limits, beside which it may be where no other start leads."""
+    bounds = _step_bounds(arm, limits)
+    q = _begun(arm, T[None], np.array([start]), bounds, _ROUND_OFF, _FIRST_STEPS, _START_COUNT)
+    beside = np.clip(turned_inside(arm, beyond), *bounds)
+    beside[:, list(arm.free)] = q[0, list(arm.free)]
+    q = np.concatenate([q, beside])
+    q = _least_of(1, *_descend_to(arm, T[None].repeat(len(q), axis=0), q, bounds, _ROUND_OFF), 1)
     best: Row = tuple(q[0].tolist())
     return best
 
@@ -43,30 +50,30 @@ def nearest_rows(
 ) -> Array:
     """`nearest_row` of poses T (k, 4, 4), each with its start (k, dof) and other `starts`, if `flat` along
     directions too in which the pose hardly moves; hardly of such as no row takes."""
-    return _nearest(arm, T, start, limits, _STANDING, _FEW_STEPS, flat, starts)
+    bounds = _step_bounds(arm, limits)
+    begun = _begun(arm, T, start, bounds, _STANDING, _FEW_STEPS, starts)
+    aims = np.repeat(T, _FOLLOWED, axis=0)
+    q, cost = _descend_to(arm, aims, begun, bounds, _STANDING)
+    if flat:
+        rows = np.concatenate([q, begun])
+        q, cost = _descend_to(arm, np.tile(aims, (2, 1, 1)), rows, bounds, _STANDING, floor=_FINEST)
+        q, cost = (x.reshape(2, len(T), _FOLLOWED, -1).swapaxes(0, 1) for x in (q, cost))
+    return _least_of(len(T), q.reshape(-1, start.shape[1]), cost.reshape(-1), 1)
 
 
-def _nearest(
+def _begun(
     arm: Arm,
     T: Array,
     start: Array,
-    limits: bool,
+    bounds: tuple[Array, Array],
     enough: float,
-    first: int,
-    flat: bool = False,
-    starts: int = _START_COUNT,
+    steps: int,
+    starts: int,
 ) -> Array:
-    bounds = _step_bounds(arm, limits)
+    """Of each pose where the steps of those of its starts are that come nearest to it."""
     q = np.concatenate([_starts(arm, row, bounds, starts) for row in start])
-    ends = _descend_to(arm, np.repeat(T, len(q) // len(T), axis=0), q, bounds, enough, first)
-    begun = _least_of(len(T), *ends, _FOLLOWED)
-    aims = np.repeat(T, _FOLLOWED, axis=0)
-    q, cost = _descend_to(arm, aims, begun, bounds, enough)
-    if flat:
-        rows = np.concatenate([q, begun])
-        q, cost = _descend_to(arm, np.tile(aims, (2, 1, 1)), rows, bounds, enough, floor=_FINEST)
-        q, cost = (x.reshape(2, len(T), _FOLLOWED, -1).swapaxes(0, 1) for x in (q, cost))
-    return _least_of(len(T), q.reshape(-1, start.shape[1]), cost.reshape(-1), 1)
+    ends = _descend_to(arm, np.repeat(T, len(q) // len(T), axis=0), q, bounds, enough, steps)
+    return _least_of(len(T), *ends, _FOLLOWED)
 
 
 def _least_of(poses: int, q: Array, cost: Array, count: int) -> Array:
