@@ -2786,6 +2786,7 @@ template <class Arm> struct LaneSolve {
   static bool collect(const Rows<P>& rows, [[maybe_unused]] const double* sums, int p, const Options& options,
                       Solutions& out) noexcept {
     int count = 0, seen = 0;
+    bool doubt = false;  // whether rows may have others near them
     [[maybe_unused]] double sum[Arm::kMaxSolutions + 1] = {};
     for (const int row : Arm::kLaneOfRow) {
       const int lane = row * P + p;
@@ -2795,8 +2796,9 @@ template <class Arm> struct LaneSolve {
       Row::flag(out, count) = false;
       count += bits & kFound;
       seen |= bits;
+      doubt = doubt || (bits & (kReal | kDoubt)) == (kReal | kDoubt);
     }
-    if ((seen & (kRough | kHit)) != 0 || (CarefulRows<Arm>::kBesideAnywhere && (seen & kReal) == 0)) return false;
+    if (doubt || (seen & (kRough | kHit)) != 0 || (CarefulRows<Arm>::kBesideAnywhere && (seen & kReal) == 0)) return false;
     if ((seen & kMeeting) != 0 && leaves_out_meeting(rows, p)) return false;
     out.count = count;
     bool compared = (seen & kMeeting) != 0;
