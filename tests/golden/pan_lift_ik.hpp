@@ -3162,16 +3162,21 @@ template <class A, class Solver> struct PathStep {
   int left = kMost;
 
   Status go_on(const Eigen::Isometry3d& before, const Eigen::Isometry3d& pose) noexcept {
-    double here[kDof], there[kDof], expected[kDof], row[kDof];
+    typename A::Joints last;
+    double *const here = last.data(), there[kDof], expected[kDof], row[kDof];
     std::copy_n(q, kDof, here);
     left = kMost;
-    const Status status = step(before, pose, 0);
+    Status status = step(before, pose, 0);
     if (status == Status::Ok && farthest(q, here) < kAway) return status;
     std::copy_n(q, kDof, there);
     std::copy_n(here, kDof, q);
     std::copy_n(here, kDof, expected);
     bool singular = false;
-    const Status why = next_row(pose, expected, row, singular);
+    Status why = next_row(pose, expected, row, singular);
+    if (A::kFree > 0 && status == Status::Unreachable && why == Status::Unreachable) {
+      why = search(pose, last, limits, row, singular);
+      if (why == Status::Ok) status = Status::Singular;
+    }
     if (why == Status::Ok && farthest(row, here) < kFarthest && arrive(row) == Status::Ok) {
       crossed = true;
       at_singularity = singular;
@@ -3209,12 +3214,26 @@ template <class A, class Solver> struct PathStep {
     return first == Status::Ok ? step(middle, pose, depth + 1) : first;
   }
 
-  Status begin([[maybe_unused]] const Eigen::Isometry3d& pose, const typename A::Joints& start) noexcept {
+  Status begin(const Eigen::Isometry3d& pose, const typename A::Joints& start) noexcept {
     std::copy_n(start.data(), kDof, q);
-    return Status::Unreachable;
+    return search(pose, start, limits, q, crossed);
   }
 
  private:
+  static Status search(const Eigen::Isometry3d& pose, const typename A::Joints& nearby, bool limits, double* row,
+                       bool& singular) noexcept {
+    typename A::Solutions found;
+    typename A::SearchOptions options;
+    options.seed = &nearby;
+    options.limits = limits;
+    Solver::search(pose, options, found);
+    if (found.count > 0) {
+      std::copy_n(found.q.data()->data(), kDof, row);
+      singular = found.singular.data()[0];
+    }
+    return found.status;
+  }
+
   static double farthest(const double* a, const double* b) noexcept {
     double most = 0.0;
     for (int j = 0; j < kDof; ++j) most = std::max(most, std::abs(a[j] - b[j]));
@@ -3278,8 +3297,7 @@ template <class A, class Solver> struct PathStep {
 
   static Eigen::Isometry3d between(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) noexcept {
     Eigen::Isometry3d out = a;
-    const Eigen::Quaterniond p(a.linear()), r(b.linear());
-    out.linear() = p.slerp(0.5, r).toRotationMatrix();
+    out.linear() = Eigen::Quaterniond(a.linear()).slerp(0.5, Eigen::Quaterniond(b.linear())).toRotationMatrix();
     out.translation() = 0.5 * (a.translation() + b.translation());
     return out;
   }
@@ -3298,19 +3316,8 @@ inline Walk follow_poses(const Eigen::Isometry3d* poses, std::ptrdiff_t count, c
     walk.crossed = false;
     if (!PoseReading<A>::clean(pose)) {
       out.status = PoseReading<A>::refused(pose);
-    } else if (i > 0) {
-      out.status = walk.go_on(before, pose);
-    } else if (out.status = walk.begin(pose, start); out.status != Status::Ok) {
-      typename A::Solutions found;
-      typename A::SearchOptions options;
-      options.seed = &start;
-      options.limits = limits;
-      Solver::search(pose, options, found);
-      out.status = found.status;
-      if (found.count > 0) {
-        std::copy_n(found.q.data()->data(), A::kDof, walk.q);
-        walk.crossed = found.singular.data()[0];
-      }
+    } else {
+      out.status = i > 0 ? walk.go_on(before, pose) : walk.begin(pose, start);
     }
     if (out.status != Status::Ok) return out;
     std::copy_n(walk.q, A::kDof, q[i].data());

@@ -3209,6 +3209,7 @@ _OFF = 0.2  # share of the motion that a row may be from where the Jacobian lead
 _LEAST_OFF = 1e-4  # rad or m that a row may be from where the Jacobian leads in any case
 
 _path_following_LEAST_DAMPING = 1e-14  # damping of steps that shall tell how far the next row is
+_Search = Callable[[Array, Array, bool], Solutions]
 _JUMP = 0.05  # rad or m that a row may be from the last one where halving does not help
 
 
@@ -3227,7 +3228,7 @@ class Path:
 
 def _follow_poses(
     arm: _Arm,
-    search: Callable[[Array, Array, bool], Solutions],
+    search: _Search,
     poses: Any,
     start: ArrayLike,
     limits: bool,
@@ -3236,7 +3237,7 @@ def _follow_poses(
     T, dof = _poses_in_line(poses, arm.task.alone), len(arm.lower)
     row = _seed_rows(arm, start, (dof,), name="start")
     q, singular = np.full((len(T), dof), np.nan), np.zeros(len(T), dtype=bool)
-    walk, before = _Walk(arm, limits), np.eye(4)
+    walk, before = _Walk(arm, search, limits), np.eye(4)
     for i, lines in enumerate(T.tolist()):
         walk.crossed = False
         read = arm.task.read(lines, arm.policy)
@@ -3247,7 +3248,7 @@ def _follow_poses(
         elif i:
             status = walk.go_on(before, pose)
         else:
-            status = walk.begin(pose, row, search)
+            status = walk.begin(pose, row)
         if status is not Status.OK:
             return Path(q, i, status, singular)
         q[i], singular[i], before = walk.q, walk.crossed, pose
@@ -3258,18 +3259,16 @@ class _Walk:
     """`q`: where the arm is, `singular`: at a singularity; `crossed`: whether it came across one since that
     was last unset."""
 
-    def __init__(self, arm: _Arm, limits: bool) -> None:
-        self.arm, self.limits = arm, limits
+    def __init__(self, arm: _Arm, search: _Search, limits: bool) -> None:
+        self.arm, self.search, self.limits = arm, search, limits
         self.q: Array = np.zeros(len(arm.lower))
         self.crossed = self.singular = False
         self.left = _MOST
 
-    def begin(
-        self, pose: Array, start: Array, search: Callable[[Array, Array, bool], Solutions]
-    ) -> Status:
+    def begin(self, pose: Array, start: Array) -> Status:
         """To the row next to the start, or the best that a search finds."""
         self.q = start
-        found = search(pose, start, self.limits)
+        found = self.search(pose, start, self.limits)
         if len(found):
             self.q, self.crossed = found.q[0], bool(found.singular[0])
         return found.status

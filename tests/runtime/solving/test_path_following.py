@@ -12,10 +12,14 @@ from numpy.typing import NDArray
 from tests.support.given_rows import given_arm
 
 from ikgen.runtime.python.arm.chain_kinematics import forward, tip_and_jacobian
-from ikgen.runtime.python.rows.solutions import Status
+from ikgen.runtime.python.rows.solutions import Solutions, Status
 from ikgen.runtime.python.solving.path_following import _between, _Walk
 
 Array = NDArray[np.float64]
+
+
+def no_search(pose: Array, start: Array, limits: bool) -> Solutions:
+    raise AssertionError("walks of arms without held joints search for nothing")
 
 
 def turn(axis: Array, angle: float, at: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> Array:
@@ -49,7 +53,7 @@ def test_a_walk_arrives_inside_the_limits_or_not_at_all() -> None:
         lower=(-1.0, 0.0), upper=(1.0, 2.0), policy=SimpleNamespace(limit_tolerance=1e-9)
     )
     for limits in (True, False):
-        walk = _Walk(arm, limits)
+        walk = _Walk(arm, no_search, limits)
         assert walk._arrive(np.array([0.5, 1.5])) is Status.OK and walk.q.tolist() == [0.5, 1.5]
         told = walk._arrive(np.array([0.5, 2.0 + 3e-9]))
         assert told is (Status.LIMITS if limits else Status.OK)
@@ -62,7 +66,7 @@ def test_the_shortest_motion_is_the_damped_least_squares_one() -> None:
     """Its gradient is nothing, also where directions are all but lost; held joints stay."""
     arm = given_arm(None)
     rng = np.random.default_rng(6)
-    walk = _Walk(arm, False)
+    walk = _Walk(arm, no_search, False)
     for damping, moving in ((0.1, [0, 1, 2, 3, 4, 5]), (1e-8, [0, 2, 3, 5]), (1e-3, [1, 4])):
         q, off = rng.uniform(-1.0, 1.0, 6), rng.normal(size=6) * 1e-3
         pose = forward(arm.chain, q + off)
@@ -98,7 +102,7 @@ def test_steps_end_where_they_do_not_halve_the_error_or_arrive() -> None:
         ([1.0, 0.1, 1e-13, 1.0], 3, 2.0),
         ([0.5, 0.9, 0.8, 0.7, 0.6], 4, 0.0),
     ):
-        walk = _Walk(arm, False)
+        walk = _Walk(arm, no_search, False)
         steps = missing(walk, errors)
         q, least = walk._newton(np.zeros(1), np.eye(4), [0])
         assert len(steps) == count and q[0] == best and least == min(errors[:count])
@@ -109,7 +113,7 @@ def test_long_ways_are_gone_in_steps_of_less_than_a_third_of_a_radian() -> None:
     policy = SimpleNamespace(limit_tolerance=1e-9)
     arm: Any = SimpleNamespace(lower=(0.0,), policy=policy, free_joints=("q",))
     for way in (0.2, 0.5, 2.0):
-        walk, at = _Walk(arm, False), [0.0]
+        walk, at = _Walk(arm, no_search, False), [0.0]
 
         def rows(pose: Array) -> Any:
             return pose[:1, 3][None], np.zeros(1, dtype=bool), Status.OK, pose[:1, 3]
@@ -127,7 +131,7 @@ def test_long_ways_are_gone_in_steps_of_less_than_a_third_of_a_radian() -> None:
 
 def test_rows_that_follow_at_no_length_end_the_way_soon() -> None:
     """Each a little beside where the Jacobian leads: every step would be halved down to the last."""
-    walk, asked = _Walk(given_arm(lambda *_: None), False), [0]
+    walk, asked = _Walk(given_arm(lambda *_: None), no_search, False), [0]
 
     def rows(pose: Array) -> Any:
         asked[0] += 1

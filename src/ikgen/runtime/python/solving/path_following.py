@@ -33,6 +33,7 @@ _NEWTON_STEPS = 30
 _BESIDE_START = 0.1  # rad or m that the first row may be from the start
 _DAMPING = 1e-8  # damping of steps that shall arrive, also along directions that are all but lost
 _LEAST_DAMPING = 1e-14  # damping of steps that shall tell how far the next row is
+_Search = Callable[[Array, Array, bool], Solutions]
 _JUMP = 0.05  # rad or m that a row may be from the last one where halving does not help
 
 
@@ -51,7 +52,7 @@ class Path:
 
 def follow_poses(
     arm: Arm,
-    search: Callable[[Array, Array, bool], Solutions],
+    search: _Search,
     poses: Any,
     start: ArrayLike,
     limits: bool,
@@ -61,7 +62,7 @@ def follow_poses(
     T, dof = poses_in_line(poses, arm.task.alone), len(arm.lower)
     row = seed_rows(arm, start, (dof,), name="start")
     q, singular = np.full((len(T), dof), np.nan), np.zeros(len(T), dtype=bool)
-    walk, before = _Walk(arm, limits), np.eye(4)
+    walk, before = _Walk(arm, search, limits), np.eye(4)
     for i, lines in enumerate(T.tolist()):
         walk.crossed = False
         read = arm.task.read(lines, arm.policy)
@@ -72,7 +73,7 @@ def follow_poses(
         elif i:
             status = walk.go_on(before, pose)
         else:
-            status = walk.begin(pose, row, search)
+            status = walk.begin(pose, row)
         if status is not Status.OK:
             return Path(q, i, status, singular)
         q[i], singular[i], before = walk.q, walk.crossed, pose
@@ -83,15 +84,13 @@ class _Walk:
     """`q`: where the arm is, `singular`: at a singularity; `crossed`: whether it came across one since that
     was last unset."""
 
-    def __init__(self, arm: Arm, limits: bool) -> None:
-        self.arm, self.limits = arm, limits
+    def __init__(self, arm: Arm, search: _Search, limits: bool) -> None:
+        self.arm, self.search, self.limits = arm, search, limits
         self.q: Array = np.zeros(len(arm.lower))
         self.crossed = self.singular = False
         self.left = _MOST
 
-    def begin(
-        self, pose: Array, start: Array, search: Callable[[Array, Array, bool], Solutions]
-    ) -> Status:
+    def begin(self, pose: Array, start: Array) -> Status:
         """To the row next to the start, or the best that a search finds."""
         self.q = start
         if self.arm.free_joints:
@@ -99,20 +98,25 @@ class _Walk:
             if len(rows) and np.abs(rows[0] - start).max() < _BESIDE_START:
                 self.crossed = bool(flags[0])
                 return self._arrive(rows[0])
-        found = search(pose, start, self.limits)
+        found = self.search(pose, start, self.limits)
         if len(found):
             self.q, self.crossed = found.q[0], bool(found.singular[0])
         return found.status
 
     def go_on(self, before: Array, pose: Array) -> Status:
         """From a pose to the next; where halved steps lead far away or nowhere, as beside a singularity,
-        to a row next to the last one if there is one."""
+        to a row next to the last one if there is one: of arms with held joints also where these have
+        other values than the shortest motion leads to."""
         here, self.left = self.q, _MOST
         status = self.step(before, pose, 0)
         if status is Status.OK and np.abs(self.q - here).max() < _AWAY:
             return status
         there, self.q = self.q, here
         rows, flags, why, _ = self._rows(pose)
+        if self.arm.free_joints and status is why is Status.UNREACHABLE:
+            found = self.search(pose, here, self.limits)
+            rows, flags = found.q, found.singular
+            status = Status.SINGULAR if len(rows) else status
         moved = np.abs(rows - here).max(axis=1)
         near = len(rows) and moved.min() < _FARTHEST
         k = int(moved.argmin()) if near else 0
