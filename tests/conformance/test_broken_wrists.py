@@ -75,6 +75,7 @@ def test_solutions_between_those_of_the_closed_form_are_found(tmp_path: Path) ->
     assert gaps(path, BETWEEN, tmp_path).max() < 1e-3
 
 
+@pytest.mark.long
 def test_solutions_on_curves_that_cross_are_found(tmp_path: Path) -> None:
     tool = ("0 0 -0.061525", "3.1416 0 -3.1416")
     path = serial_urdf(tmp_path / "wrist.urdf", SHOULDER_TOO, tip=tool, limit=3.1)

@@ -53,6 +53,7 @@ def test_a_row_beside_a_known_pair_takes_no_place(tmp_path: Path) -> None:
     assert gaps_in_both(arm, header, q, limits=False).max() < 1e-6
 
 
+@pytest.mark.long
 def test_all_four_on_one_curve_are_found(tmp_path: Path) -> None:
     """A straight elbow under an upright tool: what is left bends twice along it."""
     axes = ("", "0 0 -1", "0 1 0", "", "0 1 0", "", "0 1 0", "")

@@ -93,6 +93,7 @@ def test_configurations_on_a_limit_of_an_arm_that_is_off_by_little_are_found(
     found_on_limit(derivation, side, (1.0, 3.0), 1e-6, tmp_path)
 
 
+@pytest.mark.long
 def test_configurations_on_a_limit_beside_a_straight_elbow_are_found(tmp_path: Path) -> None:
     # the axes of joints 3 and 5 nearly align: their values are off by round-off over the elbow's square
     robot = tmp_path / "seven.urdf"

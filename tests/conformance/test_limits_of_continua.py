@@ -51,6 +51,7 @@ def gantry() -> str:
     return f'<robot name="gantry">\n{text}</robot>\n'
 
 
+@pytest.mark.long
 def test_a_continuum_is_followed_to_where_it_is_inside_the_limits(tmp_path: Path) -> None:
     path = tmp_path / "gantry.urdf"
     path.write_text(gantry())

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from benchmarks.agreement import arm_of, runner_of
 from numpy.typing import NDArray
-from tests.support.sampled import BOTH
+from tests.support.sampled import BOTH, PYTHON_OFTEN
 from tests.support.serial_urdf import serial_urdf
 
 from ikgen.generation.derive import derive
@@ -68,7 +68,7 @@ def found_at(found: NDArray[np.float64], q: NDArray[np.float64]) -> NDArray[np.f
     return np.asarray(np.abs(np.remainder(found - q + np.pi, 2.0 * np.pi) - np.pi).max(axis=1))
 
 
-@BOTH
+@PYTHON_OFTEN
 def test_both_signs_of_a_joint_are_found_next_to_nothing(language: str, tmp_path: Path) -> None:
     """Newton steps from both go to one of them: they have lost in which direction each of them is."""
     path = serial_urdf(tmp_path / "arm.urdf", SHOULDER, tip=("0 0 0.1", "0 0 0"), limit=np.pi)
@@ -82,7 +82,7 @@ def test_both_signs_of_a_joint_are_found_next_to_nothing(language: str, tmp_path
         assert len(near) >= 119, off
 
 
-@BOTH
+@PYTHON_OFTEN
 def test_two_solutions_are_found_where_a_quartic_has_one_root(
     language: str, tmp_path: Path
 ) -> None:

@@ -27,6 +27,7 @@ NEXT_TO_ONE = np.array([0.49256, -0.6860448, -0.2458157, 0.93135])
 
 
 @pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "compiles")
+@pytest.mark.long
 def test_pairs_near_vertical_tools_are_found(tmp_path: Path) -> None:
     place = tmp_path / "measured.urdf"
     path = serial_urdf(place, ORIGINS, axes=AXES, tip=TIP, limit=3.0)

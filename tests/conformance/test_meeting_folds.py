@@ -32,6 +32,7 @@ JOINTS = (
 
 
 @pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "compiles")
+@pytest.mark.long
 def test_all_are_found_where_two_folds_meet(tmp_path: Path) -> None:
     origins, axes, most = zip(*((joint[:2], *joint[2:]) for joint in JOINTS), strict=True)
     limits = [(-x, x) for x in most]

@@ -36,6 +36,7 @@ FOLDS = np.array(  # where two solutions are one, whatever the first joint and t
 
 
 @pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "compiles")
+@pytest.mark.long
 def test_they_are_found_where_products_are_fused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

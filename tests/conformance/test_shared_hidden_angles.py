@@ -29,6 +29,7 @@ arm and the pitch are the same then in two solutions."""
 
 
 @pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "compiles")
+@pytest.mark.long
 def test_all_are_found_where_the_wrist_is_not_rolled(tmp_path: Path) -> None:
     path = tmp_path / "stretch.urdf"
     path.write_text(serial_urdf("stretch", LIFT))

@@ -26,6 +26,7 @@ TIP = ("0 0 -0.16", f"{HALF} 0 {RIGHT}")
 
 
 @pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "compiles")
+@pytest.mark.long
 def test_rows_keep_the_elevation(tmp_path: Path) -> None:
     path = serial_urdf(tmp_path / "upright.urdf", ORIGINS, tip=TIP)
     request = Request(path, name="upright", task="position-pitch", tool_axis="y")
