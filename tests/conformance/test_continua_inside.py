@@ -10,7 +10,7 @@ import pytest
 from benchmarks.agreement import arm_of, runner_of
 from numpy.typing import NDArray
 from tests.support.redundant_arms import SHOULDER_ELBOW_WRIST, serial_urdf
-from tests.support.sampled import BOTH, PYTHON_OFTEN
+from tests.support.sampled import PYTHON_OFTEN
 from tests.support.serial_urdf import serial_urdf as origins_urdf
 from tests.support.solving import FIXTURES
 
@@ -46,7 +46,7 @@ def test_a_stretched_wrist_is_answered_inside_the_limits(language: str, tmp_path
     assert np.abs(arm.oracle.forward(q) - poses[index]).max() < 2e-9
 
 
-@BOTH
+@PYTHON_OFTEN
 def test_a_held_joint_stays_on_its_turn_along_a_broken_continuum(
     language: str, tmp_path: Path
 ) -> None:

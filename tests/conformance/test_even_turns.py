@@ -11,7 +11,7 @@ import pytest
 from benchmarks.agreement import arm_of, runner_of
 from numpy.typing import NDArray
 from tests.support.dh_files import dh_file
-from tests.support.sampled import BOTH, in_languages
+from tests.support.sampled import PYTHON_OFTEN, in_languages
 from tests.support.serial_urdf import serial_urdf
 from tests.support.solving import FIXTURES
 
@@ -92,7 +92,7 @@ def test_none_is_without_a_row(name: str, language: str, tmp_path: Path) -> None
     assert not len(lost), (len(lost), q[lost[0]].tolist())
 
 
-@BOTH
+@PYTHON_OFTEN
 def test_a_double_root_is_found_where_no_elimination_tells_it(
     language: str, tmp_path: Path
 ) -> None:

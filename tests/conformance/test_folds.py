@@ -171,6 +171,7 @@ def make(name: str, folder: Path) -> Made:
     return Made(q, arm, python, cpp)
 
 
+@pytest.mark.long
 def test_roots_that_rounding_made_complex_are_found(tmp_path: Path) -> None:
     derivation = derive(Request(serial_urdf(tmp_path / "wrist.urdf", OFFSET_WRIST)))
     arm, q = arm_of(derivation), np.array(SPLIT)
@@ -181,6 +182,7 @@ def test_roots_that_rounding_made_complex_are_found(tmp_path: Path) -> None:
         assert not found.missed.any(), language
 
 
+@pytest.mark.long
 def test_continua_that_cross_are_followed_from_what_is_found_between_them(tmp_path: Path) -> None:
     derivation = derive(Request(serial_urdf(tmp_path / "digits.urdf", DIGITS)))
     runner = runner_of(derivation, "cpp", tmp_path)

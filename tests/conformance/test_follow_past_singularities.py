@@ -44,6 +44,7 @@ def bent_urdf() -> str:
     return f'<robot name="arm">{text}</robot>'
 
 
+@pytest.mark.long
 def test_a_path_goes_on_from_another_value_of_the_held_joint(tmp_path: Path) -> None:
     path = tmp_path / "arm.urdf"
     path.write_text(bent_urdf())

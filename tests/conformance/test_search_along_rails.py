@@ -40,6 +40,7 @@ int main() {
 
 
 @pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "compiles")
+@pytest.mark.long
 def test_the_seed_is_found_where_it_takes_the_pose(tmp_path: Path) -> None:
     places = ("0 0 0", "0 0 0.3", "0 0 0.1", "0.4 0 0")
     robot = serial_urdf(

@@ -23,7 +23,7 @@ LIMITS = ((-0.52, 0.52), (-1.57, 1.57), (-2.53, 0.017), (-0.17, 1.4), (-0.52, 0.
 
 
 @pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "compiles")
-@pytest.mark.parametrize("tilt", sampled([2.3e-3, 3e-3], [2.3e-3]))
+@pytest.mark.parametrize("tilt", sampled([2.3e-3, 3e-3], []))
 def test_frames_are_near_and_rows_are_found(tilt: float, tmp_path: Path) -> None:
     origins = [(xyz, f"{tilt if k == 2 else 0} 0 0") for k, xyz in enumerate(PLACES)]
     path = serial_urdf(tmp_path / "tilted.urdf", origins, axes=AXES, limit=LIMITS)

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from tests.support.geared_arms import SCARA, SIX, joint_values
+from tests.support.sampled import PYTHON_OFTEN
 
 from ikgen.emit import moveit
 from ikgen.emit.cpp.cpp_emitter import emit_header
@@ -165,7 +166,7 @@ def test_values_of_a_wrong_shape_are_refused(argument: str, folder: Path, tmp_pa
             calls[argument](bad)
 
 
-@pytest.mark.parametrize("language", ["python", "cpp"])
+@PYTHON_OFTEN
 def test_the_verification_tells_another_matrix(language: str, folder: Path, tmp_path: Path) -> None:
     plain = derived(folder, "scara")
     dh = plain.module.dh

@@ -2112,18 +2112,6 @@ template <class Arm> struct CarefulRows {
     for (const int lane : Arm::kLaneOfRow)
       if (unreal(lane)) starts.take({only[0], lane, true}, ends.at(0, lane), false, aim, out);
   }
-
-  static void take_beside(const Aim& aim, const double* q0, const Options& options, Starts& starts,
-                          Places& out) noexcept {
-    constexpr std::size_t count = Arm::kBesides;
-    std::array<Rows, count> rows;
-    for (std::size_t k = 0; k < count; ++k) find_lanes(displaced(aim.pose, Arm::kBeside[k]), q0, options, rows[k]);
-    const LaneEnds<Arm, count> ends(rows, aim, options, kReal);
-    for (std::size_t k = 0; k < count; ++k)
-      for (const int lane : Arm::kLaneOfRow)
-        if (rows[k].has(lane, kReal))
-          starts.take({rows[k], lane, starts.marked(rows[k], lane)}, ends.at(k, lane), true, aim, out);
-  }
 };
 
 // --- joint bounds --------------------------------------------------------------------------------
@@ -3029,7 +3017,7 @@ template <class Arm, template <class> class Way> struct Projection {
     return true;
   }
 
-  static void take_beside(const Eigen::Isometry3d& target, Options options, double least, double* q) noexcept {
+  static void take_beyond(const Eigen::Isometry3d& target, Options options, double least, double* q) noexcept {
     Solutions beyond;
     options.limits = false;
     Way<Arm>::template solve<1>(&target, options, &beyond);
@@ -3046,7 +3034,7 @@ template <class Arm, template <class> class Way> struct Projection {
   static void solve_nearest(const Eigen::Isometry3d& target, Options options, Solutions& out) noexcept {
     double q[Arm::kDof];
     const double cost = Nearest::find(target.matrix().data(), options, options.limits, Nearest::kRoundOff, Nearest::kFirstSteps, q);
-    if (out.status == Arm::Status::Limits) take_beside(target, options, cost, q);
+    if (out.status == Arm::Status::Limits) take_beyond(target, options, cost, q);
     Eigen::Isometry3d pose;
     by_columns(MotionChain<Arm>::forward(q), pose.matrix().data());
     HeldAim<Arm>::values(q, options.free);

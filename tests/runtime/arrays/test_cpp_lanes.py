@@ -209,6 +209,7 @@ def test_a_slide_and_fewer_joints_than_equations(tmp_path: Path) -> None:
     assert sum(rough > 0 for _, rough in found) < 10
 
 
+@pytest.mark.long
 def test_lanes_find_the_rows_at_an_arm_angle(tmp_path: Path) -> None:
     """Elbows on the half plane that is asked for, as one by one."""
     module = held_module("rounded_arm_angle", tmp_path)

@@ -41,7 +41,7 @@ template <class Arm, template <class> class Way> struct Projection {
   }
 
   // A nearer row than q beside those that take the pose outside the limits, where no other start may lead.
-  static void take_beside(const Eigen::Isometry3d& target, Options options, double least, double* q) noexcept {
+  static void take_beyond(const Eigen::Isometry3d& target, Options options, double least, double* q) noexcept {
     Solutions beyond;
     options.limits = false;
     Way<Arm>::template solve<1>(&target, options, &beyond);
@@ -58,7 +58,7 @@ template <class Arm, template <class> class Way> struct Projection {
   static void solve_nearest(const Eigen::Isometry3d& target, Options options, Solutions& out) noexcept {
     double q[Arm::kDof];
     const double cost = Nearest::find(target.matrix().data(), options, options.limits, Nearest::kRoundOff, Nearest::kFirstSteps, q);
-    if (out.status == Arm::Status::Limits) take_beside(target, options, cost, q);
+    if (out.status == Arm::Status::Limits) take_beyond(target, options, cost, q);
     Eigen::Isometry3d pose;
     by_columns(MotionChain<Arm>::forward(q), pose.matrix().data());
     HeldAim<Arm>::values(q, options.free);
