@@ -1555,7 +1555,7 @@ def _leads_of(arm: _Arm, starts: _Starts, known: _Flags, near: bool = False) -> 
     broken = starts.marked & (starts.source >= 0)
     if broken.any():
         led = _ends_of(arm, starts.q[broken], starts.T[broken])
-        lost = (led.error >= arm.policy.exact) | _collapsed(arm, starts.pose[broken], led)
+        lost = (led.error >= arm.policy.exact) | _collapsed(arm, _some_of(starts, broken), led)
         broken[broken] = lost
     nowhere = np.full(len(starts.q), np.inf)
     ends = _Ends(starts.q.copy(), nowhere, nowhere.copy())
@@ -1573,14 +1573,16 @@ def _leads_of(arm: _Arm, starts: _Starts, known: _Flags, near: bool = False) -> 
     return _Leads(starts, ends, _joined(one, other), around | (on & lie))
 
 
-def _collapsed(arm: _Arm, pose: _Index, led: _Ends) -> _Flags:
-    """To which of the ends (k,) of marked starts another of their `pose` (k,) has come as well, which is
+def _collapsed(arm: _Arm, starts: _Starts, led: _Ends) -> _Flags:
+    """To which of the ends (k,) of marked starts another of their pose has come too from aside, which is
     alone there."""
+    pose, way = starts.pose, np.abs(_differences(arm, starts.q, led.q)).max(axis=1)
     a, b = np.triu_indices(len(pose), 1)
     alone = (led.error < arm.policy.arrived) & (led.sigma > _CONTINUUM)
     some = (pose[a] == pose[b]) & alone[a] & alone[b]
     a, b = a[some], b[some]
     same = np.abs(_differences(arm, led.q[a], led.q[b])).max(axis=1) < arm.policy.alike
+    same &= np.maximum(way[a], way[b]) > arm.policy.alike  # not where two branches meet
     out = np.zeros(len(pose), dtype=bool)
     out[a[same]] = out[b[same]] = True
     return out

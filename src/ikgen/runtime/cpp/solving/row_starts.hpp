@@ -191,8 +191,9 @@ template <class Arm> struct RowStarts {
   // that they began with is lost, and the solution that one of them was near may lie far away.
   bool collapsed(const Start& one) const noexcept {
     if (SingularValue<Arm>::below(one.q, kContinuum)) return false;
-    return std::any_of(all.begin(), all.begin() + count, [&one](const Start& other) noexcept {
-      return other.marked && Pair::within(Policy::kAlike, one.q, other.q);
+    const auto beside = [](const Start& s) noexcept { return Pair::within(Policy::kAlike, s.start, s.q); };
+    return std::any_of(all.begin(), all.begin() + count, [&](const Start& other) noexcept {
+      return other.marked && Pair::within(Policy::kAlike, one.q, other.q) && !(beside(one) && beside(other));
     });
   }
 

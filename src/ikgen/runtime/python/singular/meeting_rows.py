@@ -102,7 +102,7 @@ def leads_of(arm: Arm, starts: Starts, known: Flags, near: bool = False) -> Lead
     broken = starts.marked & (starts.source >= 0)
     if not arm.rounded and broken.any():
         led = ends_of(arm, starts.q[broken], starts.T[broken])
-        lost = (led.error >= arm.policy.exact) | _collapsed(arm, starts.pose[broken], led)
+        lost = (led.error >= arm.policy.exact) | _collapsed(arm, some_of(starts, broken), led)
         broken[broken] = lost
     nowhere = np.full(len(starts.q), np.inf)
     ends = Ends(starts.q.copy(), nowhere, nowhere.copy())
@@ -120,15 +120,17 @@ def leads_of(arm: Arm, starts: Starts, known: Flags, near: bool = False) -> Lead
     return Leads(starts, ends, joined(one, other), around | (on & lie))
 
 
-def _collapsed(arm: Arm, pose: Index, led: Ends) -> Flags:
-    """To which of the ends (k,) of marked starts another of their `pose` (k,) has come as well, which is
+def _collapsed(arm: Arm, starts: Starts, led: Ends) -> Flags:
+    """To which of the ends (k,) of marked starts another of their pose has come too from aside, which is
     alone there: the direction that they began with is lost, and the solution that one of them was near may
     lie far away."""
+    pose, way = starts.pose, np.abs(differences(arm, starts.q, led.q)).max(axis=1)
     a, b = np.triu_indices(len(pose), 1)
     alone = (led.error < arm.policy.arrived) & (led.sigma > _CONTINUUM)
     some = (pose[a] == pose[b]) & alone[a] & alone[b]
     a, b = a[some], b[some]
     same = np.abs(differences(arm, led.q[a], led.q[b])).max(axis=1) < arm.policy.alike
+    same &= np.maximum(way[a], way[b]) > arm.policy.alike  # not where two branches meet
     out = np.zeros(len(pose), dtype=bool)
     out[a[same]] = out[b[same]] = True
     return out
