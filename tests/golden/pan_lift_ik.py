@@ -3202,6 +3202,8 @@ def _search_held(
 # Joint values along a path of poses, on one branch.
 
 
+_Search = Callable[[Array, Array, bool], Solutions]
+
 _DEEPEST = 24  # how often the way from one pose to the next is halved
 _SHALLOW = 9  # how often the way to a pose without rows is halved
 _MOST = 1000  # steps from one pose to the next, where rows follow at no length
@@ -3211,7 +3213,6 @@ _OFF = 0.2  # share of the motion that a row may be from where the Jacobian lead
 _LEAST_OFF = 1e-4  # rad or m that a row may be from where the Jacobian leads in any case
 
 _path_following_LEAST_DAMPING = 1e-14  # damping of steps that shall tell how far the next row is
-_Search = Callable[[Array, Array, bool], Solutions]
 _JUMP = 0.05  # rad or m that a row may be from the last one where halving does not help
 
 

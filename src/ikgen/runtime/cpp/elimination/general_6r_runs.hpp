@@ -89,9 +89,8 @@ inline constexpr int kSure = 3;  // runs that have to find none where there is n
 // none of it stalls near another, and one of the pose itself tells; where solutions meet the next elimination has to find
 // as many that lie apart, as one alone may miss the same of a crowd twice, and so where there are fewer than the first had
 // roots that may be real, or than a displaced pose has: what solutions have in common may be what it hides, and what is
-// singular its roots. False where there may be more than was found: no
-// run settles it; or where there may be some though none was found: an elimination of the pose itself lost its rank, or has
-// roots, real ones or some that may be.
+// singular its roots. False where there may be more than was found: no run settles it; or where there may be some though
+// none was found: an elimination of the pose itself lost its rank, or has roots, real ones or some that may be.
 template <auto Run, class Frames, std::size_t N>
 inline bool solve_in_runs(const Frames& F, const Frame& T, const Turning& turning,
                           const std::array<std::array<int, 3>, N>& plans, Solutions& out) noexcept {

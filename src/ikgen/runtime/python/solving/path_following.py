@@ -22,6 +22,8 @@ from ikgen.runtime.python.solving.pose_solving import solve_pose
 
 __all__ = ["Path", "follow_poses"]
 
+_Search = Callable[[Array, Array, bool], Solutions]
+
 _DEEPEST = 24  # how often the way from one pose to the next is halved
 _SHALLOW = 9  # how often the way to a pose without rows is halved
 _MOST = 1000  # steps from one pose to the next, where rows follow at no length
@@ -33,7 +35,6 @@ _NEWTON_STEPS = 30
 _BESIDE_START = 0.1  # rad or m that the first row may be from the start
 _DAMPING = 1e-8  # damping of steps that shall arrive, also along directions that are all but lost
 _LEAST_DAMPING = 1e-14  # damping of steps that shall tell how far the next row is
-_Search = Callable[[Array, Array, bool], Solutions]
 _JUMP = 0.05  # rad or m that a row may be from the last one where halving does not help
 
 
