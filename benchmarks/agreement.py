@@ -22,13 +22,13 @@ from typing import Any
 import numpy as np
 
 from benchmarks.collection import ABSENT, CORPUS, load_arms, urdf_of
+from ikgen.derivation.derive import derive
 from ikgen.emit.derivation import Derivation
 from ikgen.errors import IkgenError
-from ikgen.generation.derive import derive
 from ikgen.generation.emitted_arm import EmittedArm
 from ikgen.generation.emitted_checks import oracle_for
 from ikgen.generation.emitters import find_emitter
-from ikgen.generation.request import Request
+from ikgen.records.request import Request
 from ikgen.tasks import find_task
 from ikgen.verify.agreement import disagreements
 from ikgen.verify.arm import ArmUnderTest, arm_under_test

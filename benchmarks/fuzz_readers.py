@@ -25,8 +25,8 @@ __all__ = ["READERS", "main"]
 
 
 def _robot(path: Path) -> None:
-    from ikgen.generation.inspection import inspect_robot
-    from ikgen.generation.request import Request
+    from ikgen.derivation.inspection import inspect_robot
+    from ikgen.records.request import Request
 
     inspect_robot(Request(path), advice=False)
 
@@ -38,8 +38,8 @@ def _config(path: Path) -> None:
 
 
 def _calibration(path: Path) -> None:
-    from ikgen.generation.inspection import inspect_robot
-    from ikgen.generation.request import Request
+    from ikgen.derivation.inspection import inspect_robot
+    from ikgen.records.request import Request
 
     inspect_robot(Request(FIXTURES / "ur5e.urdf", calibration=path), advice=False)
 

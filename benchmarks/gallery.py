@@ -24,9 +24,9 @@ import numpy as np
 from benchmarks.collection import ABSENT, CORPUS, load_arms, urdf_of
 from benchmarks.gallery_page import PAGE, PICTURES, page, with_reports
 from benchmarks.results import read_result, write_result
-from ikgen.generation.derive import derive
-from ikgen.generation.request import Request
+from ikgen.derivation.derive import derive
 from ikgen.processes.executors import EXECUTORS, Workers, run_pieces
+from ikgen.records.request import Request
 from ikgen.report import emit_report
 from ikgen.report.skeleton import Style, skeleton_svg
 from ikgen.report.worked_example import shown_configuration, solver_of

@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 from benchmarks.collection import urdf_of
 from benchmarks.command_line import Emitted
 from benchmarks.soak_counts import DECADES, Soak
+from ikgen.derivation.read import read
 from ikgen.generation.emitted_checks import oracle_for
-from ikgen.generation.read import read
-from ikgen.generation.request import Request
+from ikgen.records.request import Request
 from ikgen.tasks import find_task
 from ikgen.verify.arm import ArmUnderTest, arm_under_test
 from ikgen.verify.checks import CLOSURE_TOLERANCE, PUT_ON_LIMIT

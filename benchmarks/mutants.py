@@ -51,9 +51,9 @@ def mutants(count: int, seed: int, first: int = 0) -> Iterator[tuple[str, bytes]
 
 def read_one(path: Path) -> str:
     """How far reading in this process came, in a word; raises what is no refusal."""
+    from ikgen.derivation.inspection import inspect_robot
     from ikgen.errors import IkgenError
-    from ikgen.generation.inspection import inspect_robot
-    from ikgen.generation.request import Request
+    from ikgen.records.request import Request
 
     try:
         found = inspect_robot(Request(path), advice=False)
@@ -114,8 +114,8 @@ def run_all(count: int, seed: int, keep: Path, first: int = 0) -> Counter[str]:
 
 def arm_of(path: Path) -> tuple[str, ...]:
     """Options that name an arm of a file as it was, where it has several."""
-    from ikgen.generation.inspection import inspect_robot
-    from ikgen.generation.request import Request
+    from ikgen.derivation.inspection import inspect_robot
+    from ikgen.records.request import Request
 
     found = inspect_robot(Request(path), advice=False)
     if found.reading is not None or not found.candidates:

@@ -12,7 +12,7 @@ import numpy as np
 
 from benchmarks.peer_solvers import AbsentError, Arm
 from ikgen.generation.generate import generate
-from ikgen.generation.request import Outputs, Request
+from ikgen.records.request import Outputs, Request
 
 __all__ = ["ARMS", "compiled", "make_arm"]
 

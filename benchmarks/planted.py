@@ -99,13 +99,13 @@ def defects(dof: int) -> Iterator[tuple[str, str]]:
 
 def unfound(robot: Path, every: int = 1) -> tuple[list[str], int]:
     """Those (each `every`th of them) that verification passes, and how many there were."""
+    from ikgen.derivation.derive import derive
+    from ikgen.derivation.progress import silent
     from ikgen.emit.python.python_emitter import emit_module
     from ikgen.errors import IkgenError
-    from ikgen.generation.derive import derive
     from ikgen.generation.emitted_arm import EmittedArm
     from ikgen.generation.emitted_checks import oracle_for, verify_one
-    from ikgen.generation.progress import silent
-    from ikgen.generation.request import Outputs, Request
+    from ikgen.records.request import Outputs, Request
     from ikgen.verify.runners.python_module import PythonModule
 
     derivation = derive(Request(robot))

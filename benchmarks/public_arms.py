@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 
 from benchmarks.command_line import FIXTURES
+from ikgen.derivation.read import read
 from ikgen.errors import IkgenError, MissingToolError
-from ikgen.generation.read import read
-from ikgen.generation.request import Request
 from ikgen.importers.named_robots import DATA, robot_names
 from ikgen.kinematics.classify import classify
 from ikgen.projects.new_config import ArmTable, robot_arms
+from ikgen.records.request import Request
 
 __all__ = ["public_arms"]
 

@@ -36,12 +36,12 @@ from numpy.typing import NDArray
 
 from benchmarks.paper_tables import comparison
 from benchmarks.results import write_result
+from ikgen.derivation.derive import derive
 from ikgen.emit.derivation import Derivation
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.errors import IkgenError
-from ikgen.generation.derive import derive
 from ikgen.generation.emitted_checks import oracle_for
-from ikgen.generation.request import Request
+from ikgen.records.request import Request
 from ikgen.tasks import find_task
 from ikgen.verify.arm import REGULAR_SIGMA, ArmUnderTest, arm_under_test
 from ikgen.verify.runners.python_module import PythonModule

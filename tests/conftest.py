@@ -12,8 +12,8 @@ from hypothesis.internal.conjecture import providers
 from tests.support.precompiled import compilers
 from tests.support.solved import left_over, solved
 
+from ikgen.derivation import unsolved
 from ikgen.errors import MissingToolError
-from ikgen.generation import unsolved
 from ikgen.solver import solve
 from ikgen.verify.runners.cpp_toolchain import find_eigen
 

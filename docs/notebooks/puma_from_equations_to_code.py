@@ -12,8 +12,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 import sympy
 
-from ikgen.generation.derive import derive
-from ikgen.generation.request import Request
+from ikgen.derivation.derive import derive
+from ikgen.records.request import Request
 from ikgen.symbolic import equations, prove, solutions
 
 derivation = derive(Request(Path("urdf_fixtures/puma560_paper.toml")))

@@ -10,8 +10,8 @@ from typing import Any, cast
 
 import numpy as np
 
-from ikgen.generation.derive import derive
-from ikgen.generation.request import Request
+from ikgen.derivation.derive import derive
+from ikgen.records.request import Request
 from ikgen.report.graph_picture import draw
 from ikgen.report.skeleton import Style, skeleton_camera, skeleton_svg
 from ikgen.report.solution_sets import versions_of

@@ -20,10 +20,10 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any
 
-from ikgen.generation.derive import derive
-from ikgen.generation.request import Request
+from ikgen.derivation.derive import derive
 from ikgen.processes.executors import Workers
 from ikgen.reach.map_files import MapOrder, write_map
+from ikgen.records.request import Request
 from ikgen.report import emit_report
 from ikgen.report.worked_example import solver_of
 from ikgen.view.arm_scene import ArmScene, open_server

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from benchmarks.random_tables import Drawn, pattern, random_table, table_text
 
+from ikgen.derivation.read import read
 from ikgen.equations.probes import dh_pose
-from ikgen.generation.read import read
-from ikgen.generation.request import Request
+from ikgen.records.request import Request
 
 
 @pytest.mark.parametrize("slides", [1, 2, 3])

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 from tests.support.small_robots import elbow_robot
 
-from ikgen.generation.read import read
-from ikgen.generation.request import Request
+from ikgen.derivation.read import read
+from ikgen.records.request import Request
 
 
 def said(folder: Path, *, multiplier: str, own: str, driver: str = 'lower="-1" upper="2"') -> str:

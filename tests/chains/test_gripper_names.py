@@ -9,10 +9,10 @@ from tests.support.trees import serial_joints, tree_of
 
 from ikgen.chains.arms import candidate_chains
 from ikgen.chains.selection import select_chain
+from ikgen.derivation.read import read
 from ikgen.errors import UsageError
-from ikgen.generation.read import read
-from ikgen.generation.request import Request
 from ikgen.model.joint_tree import Limits
+from ikgen.records.request import Request
 
 ARM = serial_joints("base", *(f"joint{i}" for i in range(1, 6)))
 PALM = "joint5_link"

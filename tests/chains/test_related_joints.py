@@ -10,13 +10,13 @@ from tests.support.telescopes import STAGES, telescope_robot
 
 from ikgen.chains.related_joints import equal_stages, related_tree, shared_limits
 from ikgen.chains.selection import select_chain
+from ikgen.derivation.read import read
 from ikgen.errors import UnknownNameError, UsageError
 from ikgen.generation.emitted_checks import oracle_for
-from ikgen.generation.read import read
-from ikgen.generation.request import Request
 from ikgen.importers import load_tree
 from ikgen.model.joint_relation import Mimic
 from ikgen.model.joint_tree import Limits
+from ikgen.records.request import Request
 
 
 def test_a_relation_moves_the_follower_and_takes_its_limits(tmp_path: Path) -> None:

@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from ikgen.derivation.read import read
 from ikgen.errors import UnknownNameError, UsageError
 from ikgen.generation.emitted_checks import oracle_for
 from ikgen.generation.generate import generate
-from ikgen.generation.read import read
-from ikgen.generation.request import Outputs, Request
+from ikgen.records.request import Outputs, Request
 
 TABLE = """
 name = "stages"

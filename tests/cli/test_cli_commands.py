@@ -16,8 +16,8 @@ from tests.support.redundant_arms import SHOULDER_ELBOW_WRIST, TORSO, Joint, ser
 from tests.support.small_robots import write_robot
 
 from ikgen.cli.main import run
-from ikgen.generation.record import read_record
 from ikgen.projects.config import load_config
+from ikgen.records.record import read_record
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 

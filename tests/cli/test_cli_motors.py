@@ -21,9 +21,9 @@ from tests.support.redundant_arms import SHOULDER_ELBOW_WRIST, serial_urdf
 
 import ikgen
 from ikgen.cli.main import run
+from ikgen.derivation.read import read
 from ikgen.generation.emitted_checks import oracle_for
-from ikgen.generation.read import read
-from ikgen.generation.request import Request
+from ikgen.records.request import Request
 from ikgen.verify.runners.python_module import PythonModule
 
 pytestmark = pytest.mark.usefixtures("solved_once")

@@ -10,9 +10,9 @@ from tests.support.geared_arms import joint_values
 from tests.support.redundant_arms import Joint, serial_urdf
 
 from ikgen.cli.main import run
+from ikgen.derivation.read import read
 from ikgen.generation.emitted_checks import oracle_for
-from ikgen.generation.read import read
-from ikgen.generation.request import Request
+from ikgen.records.request import Request
 from ikgen.verify.runners.python_module import PythonModule
 
 pytestmark = pytest.mark.usefixtures("solved_once")

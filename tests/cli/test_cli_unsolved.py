@@ -10,13 +10,13 @@ from pathlib import Path
 import pytest
 
 from ikgen.cli.main import run
+from ikgen.derivation.derive import derive
+from ikgen.derivation.read import read
+from ikgen.derivation.remedies import remedies
 from ikgen.emit.derivation import Unsolved
 from ikgen.errors import UnsolvedChainError
-from ikgen.generation.derive import derive
-from ikgen.generation.read import read
-from ikgen.generation.remedies import remedies
-from ikgen.generation.request import Request
 from ikgen.kinematics.classify import classify
+from ikgen.records.request import Request
 from ikgen.report import emit_unsolved
 from ikgen.solver import solve
 from ikgen.solver.remainder import near_misses, open_equations
@@ -95,7 +95,7 @@ def test_how_much_is_tried_does_not_depend_on_the_time(
     monkeypatch.setattr("time.monotonic", lambda: next(clock))
     tried = remedies(caught.value.unsolved, lambda *_: None)
     assert len([a for a in tried if a.closed]) == 3
-    monkeypatch.setattr("ikgen.generation.remedies.ATTEMPTS", 2)
+    monkeypatch.setattr("ikgen.derivation.remedies.ATTEMPTS", 2)
     assert remedies(caught.value.unsolved, lambda *_: None) == tried[:2]
 
 

@@ -14,9 +14,9 @@ from tests.support.solving import FIXTURES
 from ikgen.cli.inspect_text import as_text
 from ikgen.cli.main import run
 from ikgen.cli.tree_text import transform_text
-from ikgen.generation.inspection import inspect_robot
-from ikgen.generation.request import Request
+from ikgen.derivation.inspection import inspect_robot
 from ikgen.kinematics.forward import file_forward
+from ikgen.records.request import Request
 from ikgen.solver.solution_graph import SolutionGraph
 
 pytestmark = pytest.mark.usefixtures("solved_once")

@@ -13,9 +13,9 @@ import pytest
 from ikgen.cli.braille import drawn, skeleton_text
 from ikgen.cli.console import Console
 from ikgen.cli.main import run
-from ikgen.generation.progress import Stage
-from ikgen.generation.read import read
-from ikgen.generation.request import Request
+from ikgen.derivation.progress import Stage
+from ikgen.derivation.read import read
+from ikgen.records.request import Request
 
 ROOT = Path(__file__).resolve().parents[2]
 

@@ -15,9 +15,9 @@ from tests.support.redundant_arms import SHOULDER_ELBOW_WRIST, serial_urdf
 from tests.support.sampled import sampled
 from tests.support.solving import NO_COMPILER, solver_module
 
-from ikgen.generation.read import read
-from ikgen.generation.request import Request
+from ikgen.derivation.read import read
 from ikgen.kinematics.rigid import rotation_about
+from ikgen.records.request import Request
 
 pytestmark = [
     pytest.mark.usefixtures("solved_once"),

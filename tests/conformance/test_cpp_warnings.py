@@ -11,9 +11,9 @@ from tests.support.cpp_modules import robot_file
 from tests.support.held_arms import held_module
 from tests.support.solving import NO_COMPILER
 
+from ikgen.derivation.derive import derive
 from ikgen.emit.cpp.cpp_emitter import emit_header
-from ikgen.generation.derive import derive
-from ikgen.generation.request import Request
+from ikgen.records.request import Request
 from ikgen.verify.runners.cpp_toolchain import find_eigen
 
 pytestmark = pytest.mark.usefixtures("solved_once")

@@ -10,8 +10,8 @@ from benchmarks.agreement import arm_of, runner_of
 from tests.support.sampled import in_languages
 from tests.support.serial_urdf import serial_urdf
 
-from ikgen.generation.derive import derive
-from ikgen.generation.request import Request
+from ikgen.derivation.derive import derive
+from ikgen.records.request import Request
 from ikgen.verify.completeness import survey
 from ikgen.verify.sampling import SampleSet
 from ikgen.verify.trials import run_trial

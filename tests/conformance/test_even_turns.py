@@ -15,8 +15,8 @@ from tests.support.sampled import PYTHON_OFTEN, in_languages
 from tests.support.serial_urdf import serial_urdf
 from tests.support.solving import FIXTURES
 
-from ikgen.generation.derive import derive
-from ikgen.generation.request import Request
+from ikgen.derivation.derive import derive
+from ikgen.records.request import Request
 from ikgen.verify.completeness import survey
 from ikgen.verify.sampling import SampleSet
 from ikgen.verify.trials import run_trial

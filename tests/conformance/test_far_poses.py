@@ -15,9 +15,9 @@ from tests.support.both_languages import Both, in_both
 from tests.support.sampled import sampled
 from tests.support.solving import FIXTURES, NO_COMPILER, import_text
 
+from ikgen.derivation.derive import derive
 from ikgen.emit.python.python_emitter import emit_module
-from ikgen.generation.derive import derive
-from ikgen.generation.request import Request
+from ikgen.records.request import Request
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 

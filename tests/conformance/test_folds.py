@@ -16,8 +16,8 @@ from tests.support.sampled import in_languages, sampled
 from tests.support.serial_urdf import serial_urdf
 from tests.support.solving import FIXTURES, NO_COMPILER
 
-from ikgen.generation.derive import derive
-from ikgen.generation.request import Request
+from ikgen.derivation.derive import derive
+from ikgen.records.request import Request
 from ikgen.verify.agreement import disagreements
 from ikgen.verify.arm import ArmUnderTest
 from ikgen.verify.completeness import survey

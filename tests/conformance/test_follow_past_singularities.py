@@ -9,8 +9,8 @@ import pytest
 from tests.support.both_languages import in_both
 from tests.support.solving import NO_COMPILER
 
-from ikgen.generation.derive import derive
-from ikgen.generation.request import Request
+from ikgen.derivation.derive import derive
+from ikgen.records.request import Request
 
 pytestmark = [
     pytest.mark.usefixtures("solved_once"),

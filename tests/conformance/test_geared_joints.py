@@ -10,10 +10,10 @@ from tests.support.redundant_arms import serial_urdf
 from tests.support.sampled import in_languages
 from tests.support.solving import import_text
 
+from ikgen.derivation.derive import derive
 from ikgen.emit.python.python_emitter import emit_module
-from ikgen.generation.derive import derive
 from ikgen.generation.generate import generate
-from ikgen.generation.request import Outputs, Request
+from ikgen.records.request import Outputs, Request
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 

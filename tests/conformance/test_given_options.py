@@ -9,10 +9,10 @@ import pytest
 from tests.support.routines import compiled_header, feed
 from tests.support.solving import FIXTURES
 
+from ikgen.derivation.derive import derive
 from ikgen.emit.cpp.cpp_emitter import emit_header
 from ikgen.emit.python.python_emitter import emit_module
-from ikgen.generation.derive import derive
-from ikgen.generation.request import Request
+from ikgen.records.request import Request
 from ikgen.verify.runners.python_module import PythonModule
 
 pytestmark = pytest.mark.usefixtures("solved_once")

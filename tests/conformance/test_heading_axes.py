@@ -10,7 +10,7 @@ from tests.support.sampled import in_languages
 from tests.support.solving import import_text
 
 from ikgen.generation.generate import generate
-from ikgen.generation.request import Outputs, Request
+from ikgen.records.request import Outputs, Request
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 

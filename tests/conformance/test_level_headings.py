@@ -10,10 +10,10 @@ from benchmarks.agreement import arm_of, runner_of
 from tests.support.sampled import sampled
 from tests.support.solving import NO_COMPILER
 
+from ikgen.derivation.derive import derive
+from ikgen.derivation.read import read
 from ikgen.emit.derivation import Derivation
-from ikgen.generation.derive import derive
-from ikgen.generation.read import read
-from ikgen.generation.request import Request
+from ikgen.records.request import Request
 from ikgen.tasks.fitting import fitting_tasks
 from ikgen.verify.agreement import disagreements
 from ikgen.verify.completeness import survey

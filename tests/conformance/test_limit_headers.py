@@ -11,10 +11,10 @@ from benchmarks.agreement import arm_of, runner_of
 from tests.support.sampled import sampled
 from tests.support.solving import FIXTURES, NO_COMPILER
 
+from ikgen.derivation.derive import derive
 from ikgen.emit.derivation import Derivation
 from ikgen.emit.solver_module import CLOSE
-from ikgen.generation.derive import derive
-from ikgen.generation.request import Request
+from ikgen.records.request import Request
 
 JOINT = 3
 

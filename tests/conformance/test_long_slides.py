@@ -10,8 +10,8 @@ from tests.conformance.test_cpp_self_motion import Both, in_both
 from tests.support.redundant_arms import SHOULDER_ELBOW_WRIST, serial_urdf
 from tests.support.solving import NO_COMPILER, solver_module
 
-from ikgen.generation.read import read
-from ikgen.generation.request import Request
+from ikgen.derivation.read import read
+from ikgen.records.request import Request
 from ikgen.runtime.python.held.slide_range import slide_range
 
 LIFT = ("lift", "prismatic", "0 1 1", "0 0 0.1", (0.0, 0.3))

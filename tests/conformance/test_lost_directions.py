@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from tests.support.sampled import BOTH, PYTHON_OFTEN
 from tests.support.serial_urdf import serial_urdf
 
-from ikgen.generation.derive import derive
-from ikgen.generation.request import Request
+from ikgen.derivation.derive import derive
+from ikgen.records.request import Request
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 

@@ -10,8 +10,8 @@ from tests.support.both_languages import header_of
 from tests.support.dh_files import Row, dh_file
 from tests.support.solving import NO_COMPILER
 
-from ikgen.generation.derive import derive
-from ikgen.generation.request import Request
+from ikgen.derivation.derive import derive
+from ikgen.records.request import Request
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 

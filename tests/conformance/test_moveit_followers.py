@@ -14,14 +14,14 @@ from tests.support.moveit_arms import fixed, missing_tools, offset, with_joint
 from tests.support.moveit_driver import Plugin, compile_driver, warnings_of
 from tests.support.telescopes import RELATIONS, telescope_robot
 
+from ikgen.derivation.derive import derive
 from ikgen.emit.derivation import Derivation
 from ikgen.emit.moveit import emit, emit_derivation, package_name
 from ikgen.errors import UsageError
-from ikgen.generation.derive import derive
-from ikgen.generation.request import Request
 from ikgen.importers import load_tree
 from ikgen.kinematics.forward import file_forward
 from ikgen.model.joint_tree import JointTree, Limits
+from ikgen.records.request import Request
 
 Array = NDArray[np.float64]
 GROUP = ["lift", "stage_1", "stage_2", "stage_3", "stage_4", "yaw", "pitch"]

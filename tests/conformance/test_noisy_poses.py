@@ -12,10 +12,10 @@ from tests.support.both_languages import header_of
 from tests.support.sampled import sampled
 from tests.support.solving import NO_COMPILER, import_text
 
+from ikgen.derivation.derive import derive
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.emit.solver_module import SolverModule
-from ikgen.generation.derive import derive
-from ikgen.generation.request import Request
+from ikgen.records.request import Request
 from ikgen.verify.runners.cpp_header import CppHeader
 
 pytestmark = pytest.mark.usefixtures("solved_once")

@@ -10,9 +10,9 @@ from tests.support.both_languages import Both, in_both
 from tests.support.redundant_arms import Joint, serial_urdf
 from tests.support.solving import NO_COMPILER
 
-from ikgen.generation.derive import derive
+from ikgen.derivation.derive import derive
 from ikgen.generation.generate import generate
-from ikgen.generation.request import Outputs, Request
+from ikgen.records.request import Outputs, Request
 
 pytestmark = [
     pytest.mark.usefixtures("solved_once"),

@@ -18,7 +18,7 @@ from ikgen.errors import UsageError
 from ikgen.generation.emitted_arm import EmittedArm
 from ikgen.generation.emitters import find_emitter
 from ikgen.generation.generate import generate
-from ikgen.generation.request import Outputs, Request
+from ikgen.records.request import Outputs, Request
 from ikgen.verify.runners.python_module import PythonModule
 
 pytest.importorskip("hatchling")

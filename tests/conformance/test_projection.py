@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 from tests.support.routines import compiled_header, feed
 from tests.support.sampled import sampled
 
+from ikgen.derivation.derive import derive
 from ikgen.emit.cpp.cpp_emitter import emit_header
 from ikgen.emit.python.python_emitter import emit_module
-from ikgen.generation.derive import derive
-from ikgen.generation.request import Request
+from ikgen.records.request import Request
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 

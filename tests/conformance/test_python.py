@@ -12,11 +12,11 @@ import numpy as np
 import pytest
 
 from ikgen.cli.main import run
+from ikgen.derivation.derive import derive
 from ikgen.emit.nanobind import emit
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.emit.solver_module import SolverModule
-from ikgen.generation.derive import derive
-from ikgen.generation.request import Request
+from ikgen.records.request import Request
 from ikgen.verify.runners.python_module import PythonModule
 
 pytestmark = pytest.mark.usefixtures("solved_once")

@@ -13,7 +13,7 @@ from tests.support.row_gaps import gaps_in_both
 from tests.support.serial_urdf import serial_urdf
 from tests.support.solving import NO_COMPILER
 
-from ikgen.generation.request import Request
+from ikgen.records.request import Request
 from ikgen.verify.runners.cpp_header import CppHeader
 
 pytestmark = [

@@ -10,10 +10,10 @@ from tests.support.routines import compiled_header, feed
 from tests.support.serial_urdf import serial_urdf
 from tests.support.solving import NO_COMPILER, import_text
 
+from ikgen.derivation.derive import derive
 from ikgen.emit.cpp.cpp_emitter import emit_header
 from ikgen.emit.python.python_emitter import emit_module
-from ikgen.generation.derive import derive
-from ikgen.generation.request import Request
+from ikgen.records.request import Request
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 

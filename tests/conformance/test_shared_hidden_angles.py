@@ -11,9 +11,9 @@ from tests.support.redundant_arms import Joint, serial_urdf
 from tests.support.row_gaps import row_gaps
 from tests.support.solving import FIXTURES, NO_COMPILER
 
-from ikgen.generation.derive import derive
-from ikgen.generation.request import Request
+from ikgen.derivation.derive import derive
 from ikgen.kinematics.forward import file_forward
+from ikgen.records.request import Request
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 

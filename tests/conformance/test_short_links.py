@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from tests.support.solving import import_text
 
+from ikgen.derivation.derive import derive
 from ikgen.emit.python.python_emitter import emit_module
-from ikgen.generation.derive import derive
-from ikgen.generation.request import Request
+from ikgen.records.request import Request
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 

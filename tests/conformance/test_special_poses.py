@@ -11,10 +11,10 @@ from tests.support.dh_files import dh_file
 from tests.support.sampled import in_languages
 from tests.support.solving import NO_COMPILER, import_text
 
+from ikgen.derivation.derive import derive
 from ikgen.emit.cpp.cpp_emitter import emit_header
 from ikgen.emit.python.python_emitter import emit_module
-from ikgen.generation.derive import derive
-from ikgen.generation.request import Request
+from ikgen.records.request import Request
 from ikgen.tasks import find_task
 from ikgen.verify.runners.cpp_header import CppHeader
 from ikgen.verify.runners.python_module import PythonModule

@@ -11,8 +11,8 @@ from tests.support.both_languages import Both, in_both
 from tests.support.redundant_arms import STATION_ARM, STATION_INSPECTOR, Joint, serial_urdf
 from tests.support.solving import NO_COMPILER
 
-from ikgen.generation.derive import derive
-from ikgen.generation.request import Request
+from ikgen.derivation.derive import derive
+from ikgen.records.request import Request
 
 pytestmark = [
     pytest.mark.usefixtures("solved_once"),

@@ -11,9 +11,9 @@ from tests.support.sampled import sampled
 from tests.support.serial_urdf import serial_urdf
 from tests.support.solving import NO_COMPILER
 
-from ikgen.generation.derive import derive
-from ikgen.generation.request import Request
+from ikgen.derivation.derive import derive
 from ikgen.kinematics.forward import file_forward
+from ikgen.records.request import Request
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 

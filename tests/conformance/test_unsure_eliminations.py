@@ -13,9 +13,9 @@ from tests.support.sampled import in_languages
 from tests.support.serial_urdf import serial_urdf
 from tests.support.solving import import_text
 
+from ikgen.derivation.derive import derive
 from ikgen.emit.python.python_emitter import emit_module
-from ikgen.generation.derive import derive
-from ikgen.generation.request import Request
+from ikgen.records.request import Request
 from ikgen.verify.completeness import survey
 from ikgen.verify.sampling import SampleSet
 from ikgen.verify.trials import run_trial

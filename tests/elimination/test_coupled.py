@@ -15,13 +15,13 @@ from tests.support.held_stacks import assert_solved_as_each_alone
 from tests.support.multi_start import apart, searched
 from tests.support.solving import NO_COMPILER, import_text
 
+from ikgen.derivation.derive import derive
+from ikgen.derivation.read import read
 from ikgen.elimination import EliminationPlan, elimination_plan
 from ikgen.elimination.routine import Plan, six_joints_batch
 from ikgen.emit.python.python_emitter import emit_module
-from ikgen.generation.derive import derive
 from ikgen.generation.generate import generate
-from ikgen.generation.read import read
-from ikgen.generation.request import Outputs, Request
+from ikgen.records.request import Outputs, Request
 from ikgen.runtime.python.arm.chain_kinematics import Chain, chain_of, forward, jacobian
 from ikgen.runtime.python.elimination.coupled_angle import CoupledAngle, coupled_determinants
 from ikgen.runtime.python.elimination.general_6r import Candidates, Elimination

@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 
 from ikgen.cli.main import run
+from ikgen.derivation.derive import derive
 from ikgen.emit.blanks import blanks
 from ikgen.emit.cpp.cpp_emitter import emit_header
 from ikgen.emit.derivation import Derivation
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.errors import IkgenError, UsageError
-from ikgen.generation.derive import derive
 from ikgen.generation.emitted_checks import with_samples
-from ikgen.generation.request import Request
 from ikgen.program.interpret import evaluate
+from ikgen.records.request import Request
 from ikgen.verify.runners.cpp_toolchain import find_compiler
 from ikgen.verify.runners.python_module import PythonModule
 

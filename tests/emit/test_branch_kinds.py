@@ -7,10 +7,10 @@ from types import SimpleNamespace
 import pytest
 from tests.support.cpp_modules import robot_file
 
+from ikgen.derivation.read import read
 from ikgen.emit.python import branch_kinds
 from ikgen.emit.python.branch_kinds import branch_kind, elbow_end
-from ikgen.generation.read import read
-from ikgen.generation.request import Request
+from ikgen.records.request import Request
 from ikgen.tasks import find_task
 
 

@@ -13,13 +13,13 @@ from tests.support.pan_lift import pan_lift
 from tests.support.runtime_files import MODULES
 from tests.support.solving import FIXTURES, import_text
 
+from ikgen.derivation.derive import derive
 from ikgen.emit.python.bundle import MARK, bundle
 from ikgen.emit.python.docstrings import summary
 from ikgen.emit.python.import_lines import External, import_lines
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.emit.python.runtime_source import PACKAGE, read_source, taken_apart
-from ikgen.generation.derive import derive
-from ikgen.generation.request import Request
+from ikgen.records.request import Request
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 

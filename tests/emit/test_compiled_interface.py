@@ -19,12 +19,12 @@ from tests.support.fake_native import package_and_module
 from tests.support.geared_arms import SCARA
 from tests.support.held_arms import held_module
 
+from ikgen.derivation.derive import derive
 from ikgen.emit.nanobind import emit
 from ikgen.emit.solver_module import SolverModule
-from ikgen.generation.derive import derive
-from ikgen.generation.request import Request
 from ikgen.kinematics.motor_matrix import motor_matrix
 from ikgen.model.joint_relation import Relation
+from ikgen.records.request import Request
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 

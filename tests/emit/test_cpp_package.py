@@ -13,7 +13,7 @@ from tests.support.tools import needs_cmake, printed
 
 from ikgen.emit.cpp.cpp_package import emit
 from ikgen.generation.generate import generate
-from ikgen.generation.request import Outputs, Request
+from ikgen.records.request import Outputs, Request
 from ikgen.verify.runners.cpp_toolchain import find_compiler, find_eigen
 
 pytestmark = pytest.mark.usefixtures("solved_once")

@@ -13,12 +13,12 @@ from tests.support.routines import FLAGS
 from tests.support.runtime_files import HEADERS
 from tests.support.solving import NO_COMPILER
 
+from ikgen.derivation.derive import derive
 from ikgen.emit.cpp.cpp_emitter import emit_header
 from ikgen.emit.cpp.cpp_policy import policy_lines
 from ikgen.emit.cpp.header_bundle import bundle
-from ikgen.generation.derive import derive
-from ikgen.generation.request import Request
 from ikgen.program.policy import SolvePolicy
+from ikgen.records.request import Request
 from ikgen.verify.runners.cpp_toolchain import find_compiler, find_eigen
 
 pytestmark = pytest.mark.usefixtures("solved_once")

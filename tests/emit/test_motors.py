@@ -12,18 +12,18 @@ from numpy.typing import NDArray
 from tests.support.geared_arms import SCARA, SIX, joint_values
 from tests.support.sampled import PYTHON_OFTEN
 
+from ikgen.derivation.derive import derive
 from ikgen.emit import moveit
 from ikgen.emit.cpp.cpp_emitter import emit_header
 from ikgen.emit.derivation import Derivation
 from ikgen.emit.python.python_emitter import emit_module
-from ikgen.generation.derive import derive
 from ikgen.generation.emitted_arm import EmittedArm
 from ikgen.generation.emitted_checks import oracle_for
 from ikgen.generation.emitted_runners import cpp_runner, python_runner
-from ikgen.generation.request import Request
 from ikgen.kinematics.motor_matrix import motor_matrix
 from ikgen.model.joint_relation import Relation
 from ikgen.model.transmission import Transmission
+from ikgen.records.request import Request
 from ikgen.verify.runners.python_module import PythonModule
 from ikgen.verify.verification import verify
 

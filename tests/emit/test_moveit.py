@@ -13,9 +13,9 @@ import pytest
 from tests.support.solving import FIXTURES
 from tests.support.tools import printed
 
+from ikgen.derivation.derive import derive
 from ikgen.emit.moveit import emit
-from ikgen.generation.derive import derive
-from ikgen.generation.request import Request
+from ikgen.records.request import Request
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 

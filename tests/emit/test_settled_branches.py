@@ -13,11 +13,11 @@ from tests.support.redundant_arms import SHOULDER_ELBOW_WRIST, serial_urdf
 from tests.support.runtime_files import MODULES
 from tests.support.solving import FIXTURES, import_text
 
+from ikgen.derivation.derive import derive
 from ikgen.emit.python.python_emitter import emit_module, known_facts
 from ikgen.emit.python.runtime_source import PACKAGE
 from ikgen.emit.python.settled_branches import SOME, Facts, settled
-from ikgen.generation.derive import derive
-from ikgen.generation.request import Request
+from ikgen.records.request import Request
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 

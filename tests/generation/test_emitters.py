@@ -12,12 +12,12 @@ from tests.support.redundant_arms import SHOULDER_ELBOW_WRIST, serial_urdf
 from tests.support.small_robots import write_robot
 from tests.support.solving import FIXTURES
 
+from ikgen.derivation.derive import derive
 from ikgen.emit.derivation import Derivation
 from ikgen.errors import UsageError
-from ikgen.generation.derive import derive
 from ikgen.generation.emitters import Emitter
-from ikgen.generation.request import Request
 from ikgen.plugins import PlugIn
+from ikgen.records.request import Request
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 

@@ -13,13 +13,13 @@ import pytest
 from tests.support.solving import FIXTURES
 from tests.support.waiting_program import assert_ended, script_of, wait_until_started
 
+from ikgen.derivation.read import read
 from ikgen.errors import BadDescriptionError, VerificationError
 from ikgen.generation import emitted_checks
 from ikgen.generation.emitters import Emitter, find_emitter
 from ikgen.generation.generate import generate, make_texts
-from ikgen.generation.read import read
-from ikgen.generation.request import Outputs, Request
 from ikgen.generation.runners_ahead import RunnersAhead
+from ikgen.records.request import Outputs, Request
 
 
 class Fake:

@@ -12,13 +12,13 @@ import numpy as np
 import pytest
 
 from ikgen.cli.main import run
+from ikgen.derivation.derive import derive
+from ikgen.derivation.read import read
 from ikgen.errors import BadDescriptionError, UsageError
-from ikgen.generation.derive import derive
 from ikgen.generation.emitted_checks import oracle_for
-from ikgen.generation.read import read
-from ikgen.generation.request import Request
 from ikgen.importers.calibration import row_offsets
 from ikgen.kinematics.forward import file_forward
+from ikgen.records.request import Request
 
 if sys.version_info >= (3, 11):
     import tomllib

@@ -9,11 +9,11 @@ from typing import Any
 import pytest
 
 from ikgen.errors import BadDescriptionError
-from ikgen.generation.record import find_records, read_record
 from ikgen.importers.calibration import row_offsets
 from ikgen.importers.dh.table_document import read_document
 from ikgen.importers.merge_conflict import conflict_or
 from ikgen.projects.config import load_config
+from ikgen.records.record import find_records, read_record
 
 READERS: dict[str, Callable[[Path], Any]] = {
     "ikgen.toml": load_config,

@@ -6,9 +6,9 @@ from pathlib import Path
 
 from tests.support.dh_files import dh_file
 
-from ikgen.generation.read import read
-from ikgen.generation.request import Request
+from ikgen.derivation.read import read
 from ikgen.kinematics.classify import classify
+from ikgen.records.request import Request
 
 R = "revolute"
 

@@ -13,11 +13,11 @@ from tests.support.redundant_arms import (
     serial_urdf,
 )
 
+from ikgen.derivation.read import read
 from ikgen.errors import UsageError
-from ikgen.generation.read import read
-from ikgen.generation.request import Request
 from ikgen.kinematics.elbow_geometry import elbow_geometry, without_arm_angle
 from ikgen.model.dh import DHChain
+from ikgen.records.request import Request
 
 UPRIGHT = SHOULDER_ELBOW_WRIST
 

@@ -10,12 +10,12 @@ import pytest
 from tests.support.chains import chain_forward
 from tests.support.redundant_arms import Joint, serial_urdf
 
-from ikgen.generation.derive import derive
+from ikgen.derivation.derive import derive
 from ikgen.generation.generate import generate
-from ikgen.generation.request import Outputs, Request
 from ikgen.kinematics.exact_ends import with_exact_ends
 from ikgen.kinematics.forward import dh_forward, file_forward
 from ikgen.kinematics.modified_dh import to_dh
+from ikgen.records.request import Outputs, Request
 
 _TURN = (-2.9, 2.9)
 FIVE: tuple[Joint, ...] = (

@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 from tests.support.redundant_arms import SHOULDER_ELBOW_WRIST, TORSO, serial_urdf
 
-from ikgen.generation.read import read
-from ikgen.generation.request import Request
+from ikgen.derivation.read import read
 from ikgen.kinematics.axis_relations import axis_relations
 from ikgen.kinematics.form_class import FORM_WORDS, form_class, is_two_branch
+from ikgen.records.request import Request
 
 FIXTURES = Path(__file__).resolve().parents[2] / "urdf_fixtures"
 

@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 
 from ikgen.cli.main import run
+from ikgen.derivation.read import read
 from ikgen.errors import UsageError
-from ikgen.generation.read import read
-from ikgen.generation.request import Request
 from ikgen.kinematics.free_joints import free_defaults
 from ikgen.model.joint_tree import Limits
+from ikgen.records.request import Request
 
 FIXTURES = Path(__file__).resolve().parents[2] / "urdf_fixtures"
 FR3 = FIXTURES / "franka_fr3.urdf"

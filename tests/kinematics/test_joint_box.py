@@ -8,10 +8,10 @@ from pathlib import Path
 
 import numpy as np
 
-from ikgen.generation.read import read
-from ikgen.generation.request import Request
+from ikgen.derivation.read import read
 from ikgen.kinematics.joint_box import joint_box
 from ikgen.model.joint_tree import Limits
+from ikgen.records.request import Request
 
 FR3 = Path(__file__).resolve().parents[2] / "urdf_fixtures/franka_fr3.urdf"
 

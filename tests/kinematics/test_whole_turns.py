@@ -12,12 +12,11 @@ from tests.support.coupled_arms import crank_robot
 from tests.support.small_robots import write_robot
 from tests.support.solving import NO_COMPILER, import_text
 
+from ikgen.derivation.derive import derive
+from ikgen.derivation.read import read
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.errors import UnsolvedChainError
-from ikgen.generation.derive import derive
 from ikgen.generation.generate import generate
-from ikgen.generation.read import read
-from ikgen.generation.request import Outputs, Request
 from ikgen.kinematics.whole_turns import (
     check_couplings,
     middle_of,
@@ -26,6 +25,7 @@ from ikgen.kinematics.whole_turns import (
     range_of,
 )
 from ikgen.model.dh import DHChain
+from ikgen.records.request import Outputs, Request
 
 
 def round_elbow(robot: Path) -> None:

@@ -11,17 +11,17 @@ from tests.support.redundant_arms import OFFSET_ELBOW, SHOULDER_ELBOW_WRIST, ser
 
 from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
+from ikgen.derivation.read import read
 from ikgen.equations.equation_set import EquationSet
 from ikgen.equations.knowledge import Knowledge
 from ikgen.equations.probes import arm_size, make_probes
-from ikgen.generation.read import read
-from ikgen.generation.request import Request
 from ikgen.lowering.elbow_position import bind_elbow
 from ikgen.lowering.held_angle import held_angle
 from ikgen.lowering.placement import Placement
 from ikgen.program.inputs import ArmAngle
 from ikgen.program.ops import Op
 from ikgen.program.statements import Comment
+from ikgen.records.request import Request
 
 
 def placement(

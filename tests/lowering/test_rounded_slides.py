@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from ikgen.derivation.derive import derive
 from ikgen.emit.python.python_emitter import emit_module
-from ikgen.generation.derive import derive
-from ikgen.generation.request import Request
+from ikgen.records.request import Request
 
 _JOINT = """<joint name="j{i}" type="{type}"><parent link="l{before}"/><child link="l{i}"/>
 <origin xyz="{xyz}" rpy="{rpy}"/><axis xyz="0 0 1"/>

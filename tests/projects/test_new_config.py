@@ -9,9 +9,9 @@ import pytest
 from tests.support.redundant_arms import serial_urdf
 
 from ikgen.errors import UsageError
-from ikgen.generation.request import Request
 from ikgen.projects.config import load_config
 from ikgen.projects.new_config import add_to_config, config_path, robot_arms, write_config
+from ikgen.records.request import Request
 
 FIXTURES = Path(__file__).resolve().parents[2] / "urdf_fixtures"
 AR4 = FIXTURES / "ar4_ros_driver/annin_ar4_description/urdf/ar.urdf.xacro"

@@ -10,10 +10,10 @@ import pytest
 from tests.support.tools import finished
 
 from ikgen.cli.main import run
-from ikgen.generation.codec import CodecError, Decoder
-from ikgen.generation.request import Request
 from ikgen.model.maintainer import is_maintainer, name_and_email
 from ikgen.projects.recorded_arms import arms_below
+from ikgen.records.codec import CodecError, Decoder
+from ikgen.records.request import Request
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 

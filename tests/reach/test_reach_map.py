@@ -15,9 +15,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from ikgen.derivation.derive import derive
 from ikgen.emit.derivation import Derivation
-from ikgen.generation.derive import derive
-from ikgen.generation.request import Request
 from ikgen.kinematics.forward import file_jacobian
 from ikgen.processes.executors import Workers, run_pieces
 from ikgen.reach.engine import Block, Compiled, solve_block
@@ -26,6 +25,7 @@ from ikgen.reach.png_image import png
 from ikgen.reach.reach_map import ReachMap, engine_of, interpreted_engine, reach_map
 from ikgen.reach.slices_page import slices_page
 from ikgen.reach.stored_map import archive
+from ikgen.records.request import Request
 from ikgen.report.worked_example import solver_of
 
 pytestmark = pytest.mark.usefixtures("solved_once")

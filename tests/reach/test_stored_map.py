@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 
 from ikgen.cli.main import run
+from ikgen.derivation.derive import derive
 from ikgen.errors import BadDescriptionError, MissingToolError
-from ikgen.generation.derive import derive
-from ikgen.generation.request import Request
 from ikgen.reach.grid import grid_over
 from ikgen.reach.reach_map import ReachMap, interpreted_engine, reach_map
 from ikgen.reach.stored_map import archive, map_contents, read_map, zarr_files
+from ikgen.records.request import Request
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 

@@ -10,10 +10,10 @@ import pytest
 from tests.support.browser import browser, look_at
 from tests.support.sampled import sampled
 
+from ikgen.derivation.derive import derive
 from ikgen.errors import UnsolvedChainError
-from ikgen.generation.derive import derive
-from ikgen.generation.request import Request
 from ikgen.projects.new_config import robot_arms
+from ikgen.records.request import Request
 from ikgen.report import emit_report, emit_unsolved
 
 pytestmark = pytest.mark.usefixtures("solved_once")

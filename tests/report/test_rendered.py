@@ -13,9 +13,9 @@ from typing import Any
 import pytest
 from tests.support.sampled import sampled
 
+from ikgen.derivation.derive import derive
 from ikgen.errors import UnsolvedChainError
-from ikgen.generation.derive import derive
-from ikgen.generation.request import Request
+from ikgen.records.request import Request
 from ikgen.report import emit_report, emit_unsolved
 from ikgen.report.document import Paragraph
 from ikgen.report.latex import to_latex

@@ -13,13 +13,13 @@ import pytest
 from tests.support.redundant_arms import serial_urdf
 
 from ikgen.algebra.expression_graph import ExpressionGraph
+from ikgen.derivation.derive import derive
 from ikgen.emit.derivation import Derivation
 from ikgen.formulas.normal_form import Sum
 from ikgen.formulas.normalizer import Normalizer
 from ikgen.formulas.notation import show
-from ikgen.generation.derive import derive
 from ikgen.generation.emitters import find_emitter
-from ikgen.generation.request import Request
+from ikgen.records.request import Request
 from ikgen.report import emit_report
 from ikgen.report.layout import layout
 from ikgen.report.solution_sets import versions_of

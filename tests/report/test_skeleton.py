@@ -10,10 +10,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ikgen.generation.read import read
-from ikgen.generation.request import Request
+from ikgen.derivation.read import read
 from ikgen.kinematics.forward import dh_forward
 from ikgen.model.dh import DHChain
+from ikgen.records.request import Request
 from ikgen.report.camera import hull, look_at
 from ikgen.report.skeleton import Style, skeleton_camera, skeleton_svg
 from ikgen.report.skeleton_bones import skeleton

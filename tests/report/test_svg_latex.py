@@ -8,8 +8,8 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from ikgen.generation.read import read
-from ikgen.generation.request import Request
+from ikgen.derivation.read import read
+from ikgen.records.request import Request
 from ikgen.report.skeleton import skeleton_svg
 from ikgen.report.svg_latex import svg_latex
 

@@ -10,10 +10,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from ikgen.derivation.derive import derive
 from ikgen.emit.derivation import Derivation
-from ikgen.generation.derive import derive
-from ikgen.generation.request import Request
 from ikgen.kinematics.forward import row_values
+from ikgen.records.request import Request
 from ikgen.report import emit_report
 from ikgen.report.roots_picture import hidden_roots
 from ikgen.report.worked_example import WorkedExample, solver_of, worked_example

@@ -8,9 +8,9 @@ import pytest
 
 import ikgen
 from ikgen.errors import MissingToolError, UsageError
-from ikgen.generation.request import Request
 from ikgen.importers.named_robots import DATA, robot_names
 from ikgen.projects.new_config import robot_arms
+from ikgen.records.request import Request
 
 try:
     NAMES = robot_names(DATA)

@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 from tests.support.solving import NO_COMPILER
 
+from ikgen.derivation.derive import derive
+from ikgen.derivation.read import read
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.equations.probes import arm_size
-from ikgen.generation.derive import derive
 from ikgen.generation.emitted_checks import oracle_for
 from ikgen.generation.generate import generate
-from ikgen.generation.read import read
-from ikgen.generation.request import Outputs, Request
+from ikgen.records.request import Outputs, Request
 from ikgen.verify.runners.python_module import PythonModule
 
 if sys.version_info >= (3, 11):

@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 
 from ikgen.algebra.expression_graph import ExpressionGraph
+from ikgen.derivation import derive as derivation
+from ikgen.derivation import task_forms
+from ikgen.derivation.held_joints import held_choices
+from ikgen.derivation.read import read
 from ikgen.equations.equation_set import EquationSet
 from ikgen.equations.knowledge import Knowledge
 from ikgen.equations.probes import arm_size, make_probes, smallest_singular
-from ikgen.generation import derive as derivation
-from ikgen.generation import task_forms
-from ikgen.generation.held_joints import held_choices
-from ikgen.generation.read import read
-from ikgen.generation.request import Request
+from ikgen.records.request import Request
 from ikgen.solver import soundness
 from ikgen.solver.choice import Chooser
 from ikgen.solver.leaves import all_leaves

@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 from tests.support.solving import import_text
 
+from ikgen.derivation.derive import derive
 from ikgen.emit.cpp.cpp_emitter import emit, emit_header
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.emit.solver_module import SolverModule
-from ikgen.generation.derive import derive
 from ikgen.generation.emitted_runners import arm_constants
-from ikgen.generation.request import Request
+from ikgen.records.request import Request
 from ikgen.verify.runners.cpp_header import CppHeader
 from ikgen.verify.runners.cpp_toolchain import compile_program, find_eigen
 

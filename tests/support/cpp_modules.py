@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from ikgen.derivation.read import read
 from ikgen.emit.solver_module import SolverModule
-from ikgen.generation.read import read
-from ikgen.generation.request import Request
 from ikgen.lowering.lower import lower
+from ikgen.records.request import Request
 from ikgen.solver import solve
 
 __all__ = ["EXACT", "ROBOTS", "robot_file", "solver_module"]

@@ -17,11 +17,11 @@ from tests.support.redundant_arms import (
 )
 from tests.support.solving import FIXTURES, import_text, solver_module
 
+from ikgen.derivation.derive import derive
+from ikgen.derivation.read import read
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.emit.solver_module import SolverModule
-from ikgen.generation.derive import derive
-from ikgen.generation.read import read
-from ikgen.generation.request import Request
+from ikgen.records.request import Request
 
 __all__ = ["HELD", "held_limits", "held_module", "held_of", "imported", "lift_scara", "on_limits"]
 

@@ -15,14 +15,14 @@ from numpy.typing import NDArray
 from tests.support.moveit_driver import compile_driver
 from tests.support.solving import FIXTURES
 
+from ikgen.derivation.derive import derive
 from ikgen.emit.moveit import emit, package_name
 from ikgen.emit.solver_module import SolverModule
 from ikgen.errors import MissingToolError
-from ikgen.generation.derive import derive
-from ikgen.generation.request import Request
 from ikgen.importers import load_tree
 from ikgen.kinematics.forward import file_forward
 from ikgen.model.joint_tree import Joint, JointTree, JointType, Limits
+from ikgen.records.request import Request
 from ikgen.verify.runners.cpp_toolchain import find_eigen
 
 __all__ = [

@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 from tests.support.solving import FIXTURES
 
+from ikgen.derivation.derive import derive
 from ikgen.emit.derivation import Derivation
-from ikgen.generation.derive import derive
-from ikgen.generation.request import Request
+from ikgen.records.request import Request
 from ikgen.report.worked_example import solver_of
 from ikgen.verify.runners.python_module import PythonModule
 from ikgen.view.arm_scene import ArmScene, open_server

@@ -15,10 +15,10 @@ from tests.support.sampled import sampled
 from tests.support.solving import FIXTURES, import_text
 from tests.support.symbolic_rows import symbolic_rows
 
+from ikgen.derivation.derive import derive
 from ikgen.emit.derivation import Derivation
 from ikgen.emit.python.python_emitter import emit_module
-from ikgen.generation.derive import derive
-from ikgen.generation.request import Request
+from ikgen.records.request import Request
 from ikgen.symbolic import equations, prove, solutions
 
 if sys.version_info >= (3, 11):

@@ -11,10 +11,10 @@ import pytest
 from tests.support.solving import FIXTURES
 from tests.support.tables import table
 
+from ikgen.derivation.derive import derive
 from ikgen.emit.derivation import Derivation
 from ikgen.equations.equation import Equation
-from ikgen.generation.derive import derive
-from ikgen.generation.request import Request
+from ikgen.records.request import Request
 from ikgen.solver.solution_graph import SolutionGraph
 from ikgen.solver.solve import solve_chain
 from ikgen.symbolic import equations, prove

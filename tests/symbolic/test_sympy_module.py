@@ -13,10 +13,10 @@ from tests.support.sampled import sampled
 from tests.support.solving import FIXTURES, import_text
 
 from ikgen.cli.main import run
+from ikgen.derivation.derive import derive
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.errors import UsageError
-from ikgen.generation.derive import derive
-from ikgen.generation.request import Request
+from ikgen.records.request import Request
 from ikgen.symbolic.sympy_module import module_text
 
 pytestmark = pytest.mark.usefixtures("solved_once")

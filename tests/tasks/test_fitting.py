@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from ikgen.derivation.read import read
 from ikgen.equations.readable import readable_in_dh
 from ikgen.errors import UnknownNameError, UsageError
-from ikgen.generation.read import read
-from ikgen.generation.request import Request
 from ikgen.model.dh import DHChain
 from ikgen.model.entry_names import ENTRY_NAMES
+from ikgen.records.request import Request
 from ikgen.tasks import AXES, TASKS, WHOLE_POSE, Task, find_task
 from ikgen.tasks.fitting import (
     fits,

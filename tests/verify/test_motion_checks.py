@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from tests.support.fake_arms import six_axis_oracle
 from tests.support.solving import FIXTURES
 
+from ikgen.derivation.derive import derive
 from ikgen.emit.python.python_emitter import emit_module
-from ikgen.generation.derive import derive
-from ikgen.generation.request import Request
+from ikgen.records.request import Request
 from ikgen.tasks import find_task
 from ikgen.verify.arm import ArmUnderTest, arm_under_test
 from ikgen.verify.motion_checks import (

@@ -13,13 +13,13 @@ from tests.support.redundant_arms import SHOULDER_ELBOW_WRIST, serial_urdf
 from tests.support.telescopes import RELATIONS, telescope_robot
 from tests.support.viewer import on_page, served, viewed
 
+from ikgen.derivation.derive import derive
+from ikgen.derivation.read import read
 from ikgen.errors import MissingToolError
-from ikgen.generation.derive import derive
-from ikgen.generation.read import read
-from ikgen.generation.request import Request
 from ikgen.kinematics.forward import file_forward
 from ikgen.reach.grid import grid_over
 from ikgen.reach.reach_map import interpreted_engine, reach_map
+from ikgen.records.request import Request
 from ikgen.report.worked_example import solver_of
 from ikgen.view.followed_path import between, followed
 from ikgen.view.robot_meshes import robot_meshes

@@ -212,9 +212,9 @@ def _echo(result: dict[str, Any], code: int, message: str, hint: str) -> None:
 
 def _write_depfile(path: Path, arms: Sequence[ArmConfig]) -> None:
     """What the recorded arms were read from; nothing where one could not be generated."""
-    from ikgen.generation.record import read_record
     from ikgen.projects.depfile import write_depfile
     from ikgen.projects.recorded_inputs import Packages
+    from ikgen.records.record import read_record
 
     packages = Packages()
     paths = [path for arm in arms for path in arm.records if path.is_file()]

@@ -121,7 +121,7 @@ class RobotFile(GivenPath):
 def _tree(ctx: click.Context) -> Any | None:
     """What the file says that was typed; what keeps it from being read is no matter of a completion."""
     from ikgen.cli.request_options import make_request
-    from ikgen.generation.read import read_tree
+    from ikgen.derivation.read import read_tree
 
     # an option that still lacks its value leaves what stood before it among the rest
     robot = ctx.params.get("robot") or next(iter(ctx.args), None)

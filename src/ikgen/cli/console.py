@@ -14,7 +14,7 @@ import click
 if TYPE_CHECKING:
     from rich.status import Status
 
-    from ikgen.generation.progress import Stage
+    from ikgen.derivation.progress import Stage
 
 __all__ = ["Console"]
 

@@ -20,7 +20,7 @@ from ikgen.cli.options import (
 )
 from ikgen.cli.request_options import make_request, parse_emit
 from ikgen.errors import IkgenError, UsageError
-from ikgen.generation.request import Outputs, is_table
+from ikgen.records.request import Outputs, is_table
 
 if TYPE_CHECKING:
     from ikgen.generation.generate import Generation
@@ -116,8 +116,8 @@ def _run(
     **chain: Any,
 ) -> int:
     """The job of both commands; the exit code."""
+    from ikgen.derivation.remedies import advised
     from ikgen.generation.generate import generate
-    from ikgen.generation.remedies import advised
 
     if depfile_target and depfile is None:
         raise UsageError("--depfile-target is of a --depfile", hint="give --depfile FILE as well")
@@ -147,7 +147,7 @@ def _run(
 
 def _warnings(generation: Generation) -> list[str]:
     """What has to be told of the derivation, and what became of outputs of earlier runs."""
-    from ikgen.generation.announcements import announcements
+    from ikgen.derivation.announcements import announcements
 
     return [
         *announcements(generation.derivation),

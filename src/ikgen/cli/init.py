@@ -59,7 +59,7 @@ def init(
 
     With --base alone those that begin there, with --tip the one chain to that link.
     """
-    from ikgen.generation.read import read_tree
+    from ikgen.derivation.read import read_tree
     from ikgen.projects.new_config import (
         add_to_config,
         config_path,

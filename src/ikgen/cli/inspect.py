@@ -27,7 +27,7 @@ def inspect(
     """Show the joint tree, the chains, the DH table, the geometry and advice; write nothing."""
     from ikgen.cli.inspect_json import as_dict
     from ikgen.cli.inspect_text import as_text
-    from ikgen.generation.inspection import inspect_robot
+    from ikgen.derivation.inspection import inspect_robot
 
     request = make_request(robot, **chain)
     with Console(quiet=quiet, verbose=verbose) as console:

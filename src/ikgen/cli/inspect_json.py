@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 from ikgen.library.dh_text import angle_text, length_text
 
 if TYPE_CHECKING:
-    from ikgen.generation.advice import Attempt
-    from ikgen.generation.inspection import Inspection
+    from ikgen.derivation.advice import Attempt
+    from ikgen.derivation.inspection import Inspection
     from ikgen.kinematics.classify import GeometryClass
     from ikgen.model.dh import DHChain, DHRow
     from ikgen.model.joint_tree import JointTree

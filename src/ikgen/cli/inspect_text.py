@@ -11,8 +11,8 @@ from ikgen.model.counted import counted, listed
 from ikgen.model.dh import ARM_ANGLE_OPTION
 
 if TYPE_CHECKING:
-    from ikgen.generation.advice import Attempt
-    from ikgen.generation.inspection import Inspection
+    from ikgen.derivation.advice import Attempt
+    from ikgen.derivation.inspection import Inspection
     from ikgen.kinematics.classify import GeometryClass
     from ikgen.model.dh import DHChain
 
@@ -123,7 +123,7 @@ def _advice(found: Inspection) -> str:
 
 def _tip(found: Inspection) -> list[str]:
     """What the tip's place makes of the task that is taken without options."""
-    from ikgen.generation.tip_on_axis import tip_on_axis
+    from ikgen.derivation.tip_on_axis import tip_on_axis
     from ikgen.tasks import find_task
 
     taken = found.taken

@@ -13,7 +13,7 @@ from ikgen.cli.console import Console
 from ikgen.cli.error_output import ResultError
 from ikgen.cli.options import chain_options, console_options, force_option, sampling_options
 from ikgen.cli.request_options import make_request
-from ikgen.generation.request import Outputs
+from ikgen.records.request import Outputs
 
 __all__ = ["report"]
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from ikgen.derivation.joint_value import parse_joint_value
 from ikgen.errors import UsageError
-from ikgen.generation.joint_value import parse_joint_value
-from ikgen.generation.request import Request
 from ikgen.model.maintainer import is_maintainer
 from ikgen.model.module_name import identifier, is_module_name
+from ikgen.records.request import Request
 
 __all__ = ["make_request", "parse_coupled", "parse_emit", "parse_free", "parse_locked"]
 

@@ -82,7 +82,7 @@ def _task(derivation: Derivation) -> str:
 
 def _held(derivation: Derivation) -> str:
     """What is held, and that the rest cannot do all of the task, or hardly moves."""
-    from ikgen.generation.idle_solved import idle_solved
+    from ikgen.derivation.idle_solved import idle_solved
     from ikgen.kinematics.idle_joints import lock_options
     from ikgen.tasks.fitting import over_constrained
 
@@ -135,7 +135,7 @@ def _by_default(generation: Generation, report: VerificationReport) -> str:
 
 def _elsewhere(derivation: Derivation) -> str:
     """What finds rows where the defaults have none; "" where no held value could change that."""
-    from ikgen.generation.idle_solved import idle_solved
+    from ikgen.derivation.idle_solved import idle_solved
     from ikgen.kinematics.idle_joints import idle_joints
 
     dh = derivation.reading.dh

@@ -50,7 +50,7 @@ def view(
     **chain: Any,
 ) -> None:
     """Show all solutions of a target that is dragged in a browser, until interrupted."""
-    from ikgen.generation.derive import derive
+    from ikgen.derivation.derive import derive
     from ikgen.reach.stored_map import read_map
     from ikgen.report.worked_example import solver_of
     from ikgen.view.arm_scene import ArmScene, open_server, require_viser

@@ -8,18 +8,18 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ikgen.derivation.progress import Progress, silent
 from ikgen.errors import BadDescriptionError, VerificationError
 from ikgen.generation.emitted_arm import EmittedArm
-from ikgen.generation.progress import Progress, silent
-from ikgen.generation.publish import write_texts
 from ikgen.generation.runners_ahead import RunnersAhead
+from ikgen.outputs.publish import write_texts
 from ikgen.processes.scratch_folder import ScratchFolder
 from ikgen.verify.shared_work import SharedWork
 
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Derivation, Reading
     from ikgen.generation.emitters import Emitter
-    from ikgen.generation.request import Outputs
+    from ikgen.records.request import Outputs
     from ikgen.verify.oracle import Oracle
     from ikgen.verify.runners.runner import Runner
     from ikgen.verify.verification_report import VerificationReport

@@ -8,21 +8,21 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ikgen.derivation.derive import derive
+from ikgen.derivation.progress import Progress, silent
+from ikgen.derivation.read import default_name, read
 from ikgen.errors import IkgenError, UnsolvedChainError, VerificationError
-from ikgen.generation.derive import derive
-from ikgen.generation.earlier import earlier_outputs
 from ikgen.generation.emitted_checks import verify_emitted
 from ikgen.generation.emitters import Emitter, find_emitter
-from ikgen.generation.new_records import record_texts
-from ikgen.generation.progress import Progress, silent
-from ikgen.generation.publish import check_folder, left_over, publish
-from ikgen.generation.publishing import complete_folder
-from ikgen.generation.read import default_name, read
+from ikgen.outputs.earlier import earlier_outputs
+from ikgen.outputs.journal import complete_folder
+from ikgen.outputs.new_records import record_texts
+from ikgen.outputs.publish import check_folder, left_over, publish
 from ikgen.tasks import find_task
 
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Derivation, Reading
-    from ikgen.generation.request import Outputs, Request
+    from ikgen.records.request import Outputs, Request
     from ikgen.verify.verification_report import VerificationReport
 
 __all__ = ["Generation", "Made", "generate", "make_texts"]
@@ -154,7 +154,7 @@ def make_texts(
 
 def _incomplete(failed: VerificationError, request: Request) -> IkgenError:
     """What a failed verification tells in the end."""
-    from ikgen.generation.unsolved import incomplete_error  # it brings the report along
+    from ikgen.derivation.unsolved import incomplete_error  # it brings the report along
 
     return incomplete_error(failed, request)
 

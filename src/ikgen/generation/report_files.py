@@ -7,16 +7,16 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ikgen.derivation.derive import derive
+from ikgen.derivation.progress import Progress, silent
 from ikgen.errors import IkgenError, UnsolvedChainError, VerificationError
-from ikgen.generation.derive import derive
 from ikgen.generation.emitted_checks import verify_texts, with_samples
-from ikgen.generation.progress import Progress, silent
-from ikgen.generation.publish import Content, check_folder
-from ikgen.generation.written_list import publish_listed
+from ikgen.outputs.publish import Content, check_folder
+from ikgen.outputs.written_list import publish_listed
 
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Derivation
-    from ikgen.generation.request import Outputs, Request
+    from ikgen.records.request import Outputs, Request
     from ikgen.verify.verification_report import VerificationReport
 
 __all__ = ["ReportFiles", "write_report"]
@@ -51,8 +51,8 @@ def _texts(
     request: Request, outputs: Outputs, progress: Progress
 ) -> tuple[str, dict[str, str], IkgenError | None]:
     """The arm's name, file name -> text of the report, and the error to end with."""
+    from ikgen.derivation.remedies import helped
     from ikgen.generation.emitters import find_emitter
-    from ikgen.generation.remedies import helped
     from ikgen.report import emit_report, emit_unsolved
 
     try:

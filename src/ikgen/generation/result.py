@@ -21,7 +21,7 @@ def rounding(derivation: Derivation) -> tuple[float, float] | None:
 
 def as_dict(generation: Generation) -> dict[str, Any]:
     """The result as a plain table, for --json."""
-    from ikgen.generation.announcements import announcements
+    from ikgen.derivation.announcements import announcements
 
     derivation = generation.derivation
     module, dh = derivation.module, derivation.reading.dh

@@ -9,10 +9,10 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from ikgen.emit.derivation import Derivation
-    from ikgen.generation.request import Request
     from ikgen.kinematics.classify import GeometryClass
     from ikgen.library.solver_cache import SolverEntry
     from ikgen.model.dh import DHChain
+    from ikgen.records.request import Request
     from ikgen.solver.session import Tick
     from ikgen.solver.solution_graph import SolutionGraph
 
@@ -82,7 +82,7 @@ def _symbolic() -> Any:
 
 def derived_again(request: Request, entry: SolverEntry) -> Derivation:
     """The derivation of a solver that was made before: the same description gives the same."""
-    from ikgen.generation.derive import derive
+    from ikgen.derivation.derive import derive
 
     derivation = derive(request, passed_over=entry.passed_over, refused=entry.refused)
     name = request.name or entry.name

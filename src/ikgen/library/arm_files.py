@@ -9,12 +9,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ikgen.errors import ArgumentError, MissingToolError
-from ikgen.generation.publish import Content, check_folder, publish
 from ikgen.library.load_arguments import wrong
+from ikgen.outputs.publish import Content, check_folder, publish
 
 if TYPE_CHECKING:
-    from ikgen.generation.request import Outputs, Request
     from ikgen.library.loaded_arm import Arm
+    from ikgen.records.request import Outputs, Request
 
 __all__ = ["save", "write_page"]
 

@@ -119,7 +119,7 @@ def _key(texts: Mapping[str, str]) -> str:
 
 def _build(texts: Mapping[str, str], package: str, folder: Path) -> None:
     """Compile into a folder beside, which then is moved into place."""
-    from ikgen.generation.publish import write_texts
+    from ikgen.outputs.publish import write_texts
     from ikgen.verify.runners.cpp_toolchain import compile_extension
 
     nanobind = _nanobind()

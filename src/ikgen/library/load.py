@@ -6,15 +6,15 @@ import os
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING
 
-from ikgen.generation.progress import Progress, silent
-from ikgen.generation.request import Outputs
+from ikgen.derivation.progress import Progress, silent
 from ikgen.library.load_arguments import checked_count, checked_flag, checked_request, wrong
 from ikgen.library.solver_cache import SolverCache, SolverEntry
+from ikgen.records.request import Outputs
 
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Derivation
-    from ikgen.generation.request import Request
     from ikgen.library.loaded_arm import Arm
+    from ikgen.records.request import Request
 
 __all__ = ["load"]
 
@@ -87,10 +87,10 @@ def _arm(request: Request, outputs: Outputs, store: SolverCache | None, progress
 
 def _made(request: Request, outputs: Outputs, progress: Progress) -> tuple[SolverEntry, Derivation]:
     """The solver of a request, made now."""
+    from ikgen.derivation.read import read
+    from ikgen.derivation.remedies import advised
     from ikgen.generation.emitters import find_emitter
     from ikgen.generation.generate import make_texts
-    from ikgen.generation.read import read
-    from ikgen.generation.remedies import advised
 
     progress("read", request.robot.name)
     with advised(request, progress):

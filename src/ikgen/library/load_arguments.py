@@ -10,12 +10,12 @@ from typing import Any
 
 import numpy as np
 
+from ikgen.derivation.joint_value import parse_joint_value
 from ikgen.errors import ArgumentError, IkgenError, shown
-from ikgen.generation.joint_value import parse_joint_value
-from ikgen.generation.request import Request, xacro_texts
 from ikgen.importers.named_robots import is_named
 from ikgen.model.joint_relation import read_relation
 from ikgen.model.module_name import identifier, is_module_name
+from ikgen.records.request import Request, xacro_texts
 
 __all__ = ["checked_count", "checked_flag", "checked_path", "checked_request", "wrong"]
 

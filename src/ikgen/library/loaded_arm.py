@@ -18,9 +18,9 @@ from ikgen.model.counted import counted
 
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Derivation
-    from ikgen.generation.request import Outputs, Request
     from ikgen.library.arm_derivation import ArmDerivation
     from ikgen.library.solver_cache import SolverEntry
+    from ikgen.records.request import Outputs, Request
     from ikgen.runtime.python.rows.solutions import Solutions
     from ikgen.verify.verification_report import VerificationReport
 

@@ -18,12 +18,12 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ikgen.generation.codec import encode
 from ikgen.importers.named_robots import is_named
+from ikgen.records.codec import encode
 
 if TYPE_CHECKING:
     from ikgen.generation.generate import Made
-    from ikgen.generation.request import Outputs, Request
+    from ikgen.records.request import Outputs, Request
     from ikgen.verify.verification_report import VerificationReport
 
 __all__ = ["SolverCache", "SolverEntry", "cache_folder"]
@@ -159,7 +159,7 @@ def _units(values: Mapping[str, float | None]) -> list[str]:
 
 def _content(request: Request) -> str:
     """Digest of the description: of a file that can take others in, after it did."""
-    from ikgen.generation.read import read_tree
+    from ikgen.derivation.read import read_tree
     from ikgen.importers import importer_of
 
     if is_named(request.robot):

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ikgen.errors import BadDescriptionError, IkgenError
-from ikgen.generation.record import SUFFIX, Record
+from ikgen.records.record import SUFFIX, Record
 
 if TYPE_CHECKING:
     from ikgen.symbolic.proof import Proof

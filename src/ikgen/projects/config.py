@@ -9,14 +9,14 @@ from pathlib import Path
 from typing import Any
 
 from ikgen.errors import BadDescriptionError, UsageError
-from ikgen.generation.codec import CodecError, Decoder, inlined
-from ikgen.generation.record import record_name, records_of
-from ikgen.generation.request import Outputs, Request
 from ikgen.importers.merge_conflict import conflict_or
 from ikgen.importers.named_robots import is_named
 from ikgen.importers.toml_text import parse_toml
 from ikgen.model.module_name import identifier
 from ikgen.projects.config_lines import line_of
+from ikgen.records.codec import CodecError, Decoder, inlined
+from ikgen.records.record import record_name, records_of
+from ikgen.records.request import Outputs, Request
 
 __all__ = ["ArmConfig", "default_config", "load_config", "named_config"]
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ikgen.errors import BadDescriptionError
-from ikgen.generation.record import SUFFIX, Record, read_record, seen
 from ikgen.projects.config import ArmConfig
+from ikgen.records.record import SUFFIX, Record, read_record, seen
 
 __all__ = ["LeftOutputs", "left_outputs"]
 

@@ -8,15 +8,15 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ikgen.derivation.read import arm_name, read, read_tree
 from ikgen.emit.rendering import TURNING_MARKS
 from ikgen.errors import UsageError
-from ikgen.generation.publish import publish
-from ikgen.generation.read import arm_name, read, read_tree
-from ikgen.generation.record import seen_from
-from ikgen.generation.request import Request
 from ikgen.importers.named_robots import is_named
 from ikgen.model.module_name import identifier
+from ikgen.outputs.publish import publish
 from ikgen.projects.config import CONFIG, PYPROJECT, load_config
+from ikgen.records.record import seen_from
+from ikgen.records.request import Request
 
 if TYPE_CHECKING:
     from ikgen.chains.arms import ChainCandidate

@@ -15,11 +15,11 @@ from ikgen.projects.forward_difference import forward_difference
 from ikgen.verify.shared_work import SharedWork
 
 if TYPE_CHECKING:
+    from ikgen.derivation.progress import Progress
     from ikgen.emit.derivation import Reading
-    from ikgen.generation.progress import Progress
-    from ikgen.generation.record import Record
-    from ikgen.generation.request import Outputs
     from ikgen.generation.runners_ahead import RunnersAhead
+    from ikgen.records.record import Record
+    from ikgen.records.request import Outputs
     from ikgen.verify.oracle import Oracle
     from ikgen.verify.runners.runner import Runner
     from ikgen.verify.verification_report import VerificationReport

@@ -8,13 +8,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ikgen.derivation.progress import Progress, Stage, Steps, silent
 from ikgen.errors import INTERNAL_ERROR, IkgenError, told
-from ikgen.generation.progress import Progress, Stage, Steps, silent
-from ikgen.generation.publishing import complete_folder
-from ikgen.generation.record import read_record
+from ikgen.outputs.journal import complete_folder
 from ikgen.processes.executors import Workers
 from ikgen.projects.config import ArmConfig
 from ikgen.projects.stale import stale_reasons
+from ikgen.records.record import read_record
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor, Future
@@ -163,7 +163,7 @@ def _failed(job: _Job, error: Exception) -> Outcome:
 
 def _made(job: _Job, made: Generation) -> Outcome:
     """The outcome of an arm that was generated."""
-    from ikgen.generation.announcements import announcements
+    from ikgen.derivation.announcements import announcements
 
     missed = "; ".join(f"{n} {r.missed_words}" for n, r in made.reports.items() if r.missed)
     held = made.derivation.held

@@ -10,7 +10,7 @@ from ikgen import __version__
 from ikgen.projects.check_findings import Finding, Recheck
 
 if TYPE_CHECKING:
-    from ikgen.generation.progress import Progress
+    from ikgen.derivation.progress import Progress
     from ikgen.symbolic.proof import Proof
 
 __all__ = ["proved"]
@@ -22,7 +22,7 @@ def proved(result: Recheck, robot: Path | None, progress: Progress) -> Recheck:
     record = result.record
     if record is None or not result.passed:
         return result
-    from ikgen.generation.derive import derive
+    from ikgen.derivation.derive import derive
     from ikgen.symbolic import prove
 
     progress("prove", record.name)

@@ -7,19 +7,19 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ikgen.derivation.progress import Progress, silent
+from ikgen.derivation.read import read
 from ikgen.errors import UnknownNameError, UsageError
-from ikgen.generation.progress import Progress, silent
-from ikgen.generation.publish import left_over
-from ikgen.generation.publishing import half_in_place
-from ikgen.generation.read import read
-from ikgen.generation.record import Record, digest
-from ikgen.generation.request import Outputs
 from ikgen.importers.named_robots import is_named
+from ikgen.outputs.journal import half_in_place
+from ikgen.outputs.publish import left_over
 from ikgen.processes.executors import Workers
 from ikgen.projects.check_findings import HALF_IN_PLACE, Finding, Recheck
 from ikgen.projects.output_checks import Checked, OutputChecks
 from ikgen.projects.recorded_inputs import Packages
 from ikgen.projects.sample_blocks import BLOCK, SampleBlock, blocks_checked
+from ikgen.records.record import Record, digest
+from ikgen.records.request import Outputs
 
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Reading

@@ -7,15 +7,15 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ikgen.derivation.progress import Progress, silent
 from ikgen.errors import IkgenError, UsageError
-from ikgen.generation.progress import Progress, silent
-from ikgen.generation.publishing import interrupted
-from ikgen.generation.record import SUFFIX, find_records, read_record
+from ikgen.outputs.journal import interrupted
 from ikgen.projects.check import mending
 from ikgen.projects.check_findings import HALF_IN_PLACE, Finding, Recheck, unchecked
 from ikgen.projects.config import default_config, load_config
 from ikgen.projects.proofs import proved
 from ikgen.projects.recheck import recheck
+from ikgen.records.record import SUFFIX, find_records, read_record
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

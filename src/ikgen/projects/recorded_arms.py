@@ -6,10 +6,10 @@ from dataclasses import replace
 from pathlib import Path
 
 from ikgen.errors import UsageError
-from ikgen.generation.record import find_records, read_record, records_of
-from ikgen.generation.request import Outputs
 from ikgen.importers.named_robots import is_named
 from ikgen.projects.config import ArmConfig, load_config
+from ikgen.records.record import find_records, read_record, records_of
+from ikgen.records.request import Outputs
 
 __all__ = ["arms_below", "has_lost_robot", "listed_arms"]
 

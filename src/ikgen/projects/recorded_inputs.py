@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from ikgen.generation.record import Record, seen
 from ikgen.importers.packages import PACKAGE_URL, PackageFinder, PackageNotFoundError
+from ikgen.records.record import Record, seen
 
 __all__ = ["Input", "Packages"]
 

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ikgen.errors import IkgenError
-from ikgen.generation.request import Request
 from ikgen.importers.named_robots import DATA, robot_names
+from ikgen.records.request import Request
 
 if TYPE_CHECKING:
     from ikgen.projects.new_config import ArmTable

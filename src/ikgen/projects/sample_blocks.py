@@ -6,12 +6,12 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from ikgen.generation.progress import silent
-from ikgen.generation.read import read
-from ikgen.generation.record import read_record
-from ikgen.generation.request import Outputs
+from ikgen.derivation.progress import silent
+from ikgen.derivation.read import read
 from ikgen.processes.executors import Workers, run_pieces
 from ikgen.projects.output_checks import Checked, OutputChecks
+from ikgen.records.record import read_record
+from ikgen.records.request import Outputs
 
 __all__ = ["BLOCK", "SampleBlock", "blocks_checked"]
 

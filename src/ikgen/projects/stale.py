@@ -11,9 +11,12 @@ from typing import Any
 
 from ikgen import __version__
 from ikgen.errors import BadDescriptionError
-from ikgen.generation.codec import encode, entries_of
-from ikgen.generation.publishing import half_in_place
-from ikgen.generation.record import (
+from ikgen.outputs.journal import half_in_place
+from ikgen.projects.check_findings import HALF_IN_PLACE
+from ikgen.projects.config import ArmConfig
+from ikgen.projects.recorded_inputs import Packages
+from ikgen.records.codec import encode, entries_of
+from ikgen.records.record import (
     Record,
     digest,
     environment_digest,
@@ -21,10 +24,7 @@ from ikgen.generation.record import (
     record_name,
     seen,
 )
-from ikgen.generation.request import Request
-from ikgen.projects.check_findings import HALF_IN_PLACE
-from ikgen.projects.config import ArmConfig
-from ikgen.projects.recorded_inputs import Packages
+from ikgen.records.request import Request
 
 __all__ = ["stale_reasons", "why_stale"]
 

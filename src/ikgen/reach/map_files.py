@@ -6,16 +6,16 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from ikgen.generation.derive import derive
-from ikgen.generation.progress import Progress, silent
-from ikgen.generation.publish import check_folder
-from ikgen.generation.request import Request
-from ikgen.generation.written_list import publish_listed
+from ikgen.derivation.derive import derive
+from ikgen.derivation.progress import Progress, silent
+from ikgen.outputs.publish import check_folder
+from ikgen.outputs.written_list import publish_listed
 from ikgen.processes.executors import Workers
 from ikgen.reach.grid import grid_over
 from ikgen.reach.reach_map import ReachMap, engine_of, reach_map
 from ikgen.reach.slices_page import slices_page
 from ikgen.reach.stored_map import FORMATS, check_format, map_contents
+from ikgen.records.request import Request
 
 __all__ = ["MapOrder", "write_map"]
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.lib.npyio import NpzFile
 
 from ikgen.errors import BadDescriptionError, MissingToolError
-from ikgen.generation.publish import Content
+from ikgen.outputs.publish import Content
 from ikgen.reach.grid import Grid
 from ikgen.reach.reach_map import ReachMap
 

@@ -12,9 +12,9 @@ import pytest
 from tests.support.cpp_modules import robot_file, solver_module
 from tests.support.solving import import_text
 
+from ikgen.derivation.derive import derive
 from ikgen.emit.python.python_emitter import emit_module
-from ikgen.generation.derive import derive
-from ikgen.generation.request import Request
+from ikgen.records.request import Request
 from ikgen.runtime.python.solving import pose_solving
 from ikgen.runtime.python.solving.doubtful_poses import placed_rows
 from ikgen.runtime.python.solving.pose_solving import solve_pose

@@ -1,0 +1,85 @@
+"""Joints that are held by request although the arm needs them for what nobody asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from ikgen.errors import UnsolvedChainError
+from ikgen.model.counted import counted
+
+if TYPE_CHECKING:
+    from ikgen.model.dh import DHChain
+    from ikgen.records.request import Request
+    from ikgen.tasks import Task
+
+__all__ = ["check_held", "check_task", "check_tool_axis", "needs_held"]
+
+
+def needs_held(dh: DHChain, task: Task) -> bool:
+    """Whether the joints that are held would move freedoms of the task that the others do not."""
+    from ikgen.tasks.fitting import freedoms_moved
+
+    if not dh.free:
+        return False
+    return freedoms_moved(replace(dh, free=()), task) > freedoms_moved(dh, task)
+
+
+def check_task(request: Request, dh: DHChain) -> None:
+    """Raises `UnsolvedChainError` for a task of which the arm moves some freedoms only barely, and the
+    others by more joints than they need: joints that were held would decide the former, and no path that
+    moves them could be followed."""
+    from ikgen.tasks import find_task
+    from ikgen.tasks.fitting import (
+        fitting_tasks,
+        freedoms_barely_moved,
+        freedoms_fixed,
+        freedoms_moved,
+    )
+
+    if request.named_task is None:
+        return
+    task, whole = find_task(request.named_task, request.tool_axis), replace(dh, free=())
+    moved, fixed = freedoms_moved(whole, task), freedoms_fixed(whole, task)
+    if moved >= min(fixed, whole.dof) or not freedoms_barely_moved(dh, task):
+        return
+    able = next((t for t in fitting_tasks(whole, request.tool_axis) if not t.whole_pose), None)
+    other = replace(request, task=able.name if able else "TASK", free={}).command()
+    raise UnsolvedChainError(
+        f"no closed form found for the task '{task.name}': the joints move {moved} of the {fixed} "
+        "freedoms that the task fixes, and the others by no more than rounding tilts their axes",
+        hint=other if able else f"{other}: `ikgen inspect` lists those that fit",
+    )
+
+
+def check_tool_axis(request: Request, dh: DHChain) -> None:
+    """Raises `UsageError` for an axis without a task where the arm moves all of a pose: no other fits."""
+    from ikgen.tasks import find_task
+    from ikgen.tasks.fitting import freedoms_moved
+
+    pose, axis = find_task("pose"), request.tool_axis
+    if axis is not None and request.task is None and freedoms_moved(dh, pose) == pose.freedoms:
+        pose.along(axis)
+
+
+def check_held(request: Request, dh: DHChain, task: Task, passed_over: Collection[str]) -> None:
+    """Raises `UnsolvedChainError` where a task that nobody asked for needs joints that the request holds:
+    no task that the others can do has a closed form, and the whole pose answers hardly any."""
+    from ikgen.tasks.fitting import fitting_tasks
+
+    if request.task is not None or not request.free or not needs_held(dh, task):
+        return
+    moving, held = dh.dof - len(dh.free), " and ".join(f"'{name}'" for name in dh.free)
+    tried = [f"'{t.name}'" for t in fitting_tasks(dh, request.tool_axis) if not t.whole_pose]
+    failed = ", ".join(f"'{name}'" for name in passed_over)
+    causes = [f"none has a closed form: {', '.join(tried)}"] if tried else ["there is none"]
+    causes += [f"code for {failed} failed its verification"] if failed else []
+    without = replace(request, free={}).command()
+    asked = replace(request, task=task.name).command()
+    raise UnsolvedChainError(
+        f"no closed form found for a task that {counted(moving, 'joint')} can do, with {held} held: "
+        f"{'; '.join(causes)}",
+        hint=f"hold none of them: {without}\nor take the poses that the arm can take with them held, and "
+        f"the nearest of these by solve(pose, project=True): {asked}",
+    )

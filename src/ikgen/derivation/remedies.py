@@ -1,0 +1,125 @@
+"""What would help an unsolved chain: joints held free and smaller tasks, tried one after the other."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from ikgen.derivation.progress import Progress, silent
+from ikgen.errors import UnsolvedChainError
+from ikgen.model.counted import counted
+
+if TYPE_CHECKING:
+    from ikgen.derivation.advice import Attempt
+    from ikgen.derivation.held_joints import HeldChoice
+    from ikgen.derivation.task_forms import ClosedForm
+    from ikgen.emit.derivation import Unsolved
+    from ikgen.model.dh import DHChain
+    from ikgen.records.request import Request
+    from ikgen.tasks import Task
+
+__all__ = ["advised", "helped", "remedies"]
+
+ATTEMPTS = 20
+"""No more derivations than these are tried. Their number counts, not the time they take: the hint is part
+of the report, which is the same on every machine."""
+
+_ENOUGH = 3
+_MOST_HELD = 2
+
+
+@contextmanager
+def advised(request: Request, progress: Progress) -> Iterator[None]:
+    """Give the error of an arm without a closed form a hint that was tried."""
+    try:
+        yield
+    except UnsolvedChainError as error:
+        raise helped(error, request, progress) from None
+
+
+def helped(error: UnsolvedChainError, request: Request, progress: Progress) -> UnsolvedChainError:
+    """The error with a hint that was tried, the command to type first; as it is where it does not say how
+    far it came."""
+    if error.unsolved is None:
+        return error
+    tried = remedies(error.unsolved, progress)
+    found = [a for a in tried if a.closed]
+    if found:
+        words = "; ".join(
+            f"{a.options} (at most {counted(a.max_solutions, 'solution')})" for a in found
+        )
+        hint = f"{found[0].asked(request).command()}\nclosed forms were found with: {words}"
+        if any(a.free for a in found):
+            hint += "; --lock JOINT=VALUE instead of --free makes the joint a constant"
+    elif tried:
+        hint = f"{error.hint}\ntried without success: {_listed(tried)}"
+    else:
+        return error
+    better = UnsolvedChainError(
+        error.message, unsolved=error.unsolved, details=error.details, hint=hint
+    )
+    better.warnings = error.warnings
+    return better
+
+
+def _listed(tried: list[Attempt]) -> str:
+    """The attempts, those of a task together."""
+    words = []
+    for task in dict.fromkeys(a.task for a in tried):
+        held = [" and ".join(a.held) for a in tried if a.task == task and a.held]
+        words.append(f"--task {task}" + (f" with {', or '.join(held)} held" if held else ""))
+    return "; ".join(words)
+
+
+def remedies(unsolved: Unsolved, progress: Progress) -> list[Attempt]:
+    """Derivations that were tried, up to three closed ones or the most attempts, in their order."""
+    from ikgen.derivation.advice import attempt
+    from ikgen.derivation.task_forms import Demand, by_elimination, task_form
+
+    reading = unsolved.reading
+    forms: list[ClosedForm] = []
+    found: list[Attempt] = []
+    for task, choice in itertools.islice(_choices(unsolved), _most_attempts(reading.dh)):
+        closed = [a for a in found if a.closed]
+        if len(closed) == _ENOUGH or any(a.task != task.name for a in closed):
+            break
+        held = () if choice is None else choice.held
+        progress("try", " ".join([task.name, *(f"--free {name}" for name in held)]))
+        dh = reading.dh if choice is None else choice.dh
+        forms.append(task_form(replace(reading, dh=dh), task, silent))
+        found.append(replace(attempt(forms[-1], silent), held=held))
+    if not any(a.closed for a in found):
+        solved = (by_elimination(form, Demand(None, (), progress)) for form in forms)
+        first = next((form for form in solved if form.plan is not None), None)
+        found += [] if first is None else [attempt(first, progress)]
+    return found
+
+
+def _most_attempts(dh: DHChain) -> int:
+    """How many derivations are tried for a chain: fewer where each takes more work."""
+    from ikgen.derivation.closed_forms import RULE_TRIES, rule_tries
+
+    return max(1, ATTEMPTS * rule_tries(dh) // RULE_TRIES)
+
+
+def _choices(unsolved: Unsolved) -> Iterator[tuple[Task, HeldChoice | None]]:
+    """The choices of joints to hold that were not tried for the task, then smaller tasks, with as many
+    joints held as move in vain (None: none)."""
+    from ikgen.derivation.closed_forms import rule_tries
+    from ikgen.derivation.held_joints import held_choices
+    from ikgen.tasks import TASKS
+
+    reading, task = unsolved.reading, unsolved.task
+    smaller = [t for t in TASKS if t.freedoms < task.freedoms and t.name != "rotation"]
+    for choice in held_choices(reading, task)[rule_tries(reading.dh) :]:
+        yield task, choice
+    for one in smaller:
+        choices = held_choices(reading, one)
+        if not choices:
+            yield one, None
+        for choice in choices:
+            if len(choice.held) <= _MOST_HELD:
+                yield one, choice
