@@ -10,6 +10,7 @@ from benchmarks import determinism
 ELBOW = REPOSITORY / "examples/setuptools_robot/urdf/elbow.urdf"
 
 
+@pytest.mark.long
 def test_the_same_bytes(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

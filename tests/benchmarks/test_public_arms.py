@@ -28,6 +28,7 @@ def test_arms_are_classed_and_mirror_images_left_out() -> None:
     assert sum(name.startswith("abb_yumi") for name in rows) == 1  # its arms mirror each other
 
 
+@pytest.mark.long
 def test_one_is_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     written = tmp_path / "found.json"
     options = ["--public", "--arm", "open_manipulator_x", "--samples", "20", "--json", str(written)]

@@ -73,6 +73,7 @@ def test_what_is_no_arm_angle_is_refused(
     assert said in capsys.readouterr().err
 
 
+@pytest.mark.long
 @needs_cmake
 def test_cmake_holds_it(robot: Path) -> None:
     (robot.parent / "CMakeLists.txt").write_text(_PROJECT)

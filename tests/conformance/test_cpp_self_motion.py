@@ -26,7 +26,7 @@ pytestmark = [
 
 Array = NDArray[np.float64]
 
-OFTEN = ("rounded_arm_angle", "ur5e")
+OFTEN = ("rounded_arm_angle",)
 
 
 @pytest.fixture(scope="module", params=sampled(HELD, OFTEN))
@@ -149,8 +149,8 @@ def test_the_best_row_may_be_at_an_end_on_a_limit_or_just_before_a_fold(tmp_path
         held = held_of(arm, row)
         ends = both.run(0, seed, pose[None])[1].reshape(-1, 3)[:, :2]
         at_end += bool(np.abs(ends - held).min() < 1e-8)
-        random = rng.uniform(arm.LOWER[-1], arm.UPPER[-1], 300)
-        rows = arm.solve_batch(np.repeat(pose[None], 300, axis=0), free=random[:, None])[0]
+        random = rng.uniform(arm.LOWER[-1], arm.UPPER[-1], 100)
+        rows = arm.solve_batch(np.repeat(pose[None], 100, axis=0), free=random[:, None])[0]
         rows = rows.reshape(-1, arm.DOF)
         best = np.nanmin(np.linalg.norm(rows - seed, axis=1))
         assert cost(arm, 1, row, seed) < best + 1e-7

@@ -59,7 +59,12 @@ def branches(graph: SolutionGraph) -> int:
 
 
 @pytest.mark.parametrize(
-    "chain", [three_parallel(), three_parallel(IN_TEN_DIGITS), spherical_wrist(1.571)]
+    "chain",
+    [
+        three_parallel(),
+        three_parallel(IN_TEN_DIGITS),
+        pytest.param(spherical_wrist(1.571), marks=pytest.mark.long),
+    ],
 )
 def test_files_own_chain_has_a_closed_form(chain: Chain, tmp_path: Path) -> None:
     dh, graph, exact = written(chain)

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from tests.support.chains import chain_forward
 from tests.support.redundant_arms import Joint, serial_urdf
+from tests.support.sampled import sampled
 
 from ikgen.derivation.derive import derive
 from ikgen.generation.generate import generate
@@ -39,7 +40,7 @@ def five(folder: Path, half_turn: str, task: str | None = "position-direction") 
     return Request(path, task=task)
 
 
-@pytest.mark.parametrize("half_turn", ["3.1416", "3.14159", "3.14159265"])
+@pytest.mark.parametrize("half_turn", sampled(["3.1416", "3.14159", "3.14159265"], ["3.14159"]))
 def test_rounded_tool_has_the_closed_form_of_the_exact_one(tmp_path: Path, half_turn: str) -> None:
     meant = derive(five(tmp_path, "3.141592653589793"))
     found = derive(five(tmp_path, half_turn))

@@ -92,6 +92,7 @@ def test_progress_and_unknown_task(tmp_path: Path) -> None:
         verify(runner, oracle, task="posture")
 
 
+@pytest.mark.long
 def test_checks_take_little_time(tmp_path: Path) -> None:
     runner, oracle = six_axis_module(tmp_path), six_axis_oracle()
     start = time.process_time()
