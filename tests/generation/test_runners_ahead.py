@@ -90,8 +90,9 @@ def test_what_was_made_is_closed_where_making_another_is_interrupted() -> None:
     assert log == ["make b", "close b"]
 
 
-def test_the_header_comes_first_and_is_told_second(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize("names", [("python", "sympy", "cpp"), ("cpp", "sympy", "python")])
+def test_the_header_is_compiled_while_the_module_is_verified_and_told_where_it_was_asked_for(
+    names: tuple[str, ...], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     steps: list[str] = []
 
@@ -113,11 +114,11 @@ def test_the_header_comes_first_and_is_told_second(
     monkeypatch.setattr(Emitter, "runner", lambda self, *_: Runner(self.name))
     monkeypatch.setattr(emitted_checks, "verify_one", verified)
     request = Request(FIXTURES / "kuka_kr6r900sixx.urdf")
-    emitters = [find_emitter(name) for name in ("python", "sympy", "cpp")]
+    emitters = [find_emitter(name) for name in names]
     made = make_texts(request, read(request), emitters, Outputs(out=tmp_path))
     assert steps == ["sympy", "cpp", "python", "verify python", "verify cpp with python"]
-    assert list(made.texts) == ["python", "sympy", "cpp"]
-    assert list(made.reports) == ["python", "cpp"]
+    assert list(made.texts) == list(names)
+    assert list(made.reports) == [name for name in names if name != "sympy"]
 
 
 @pytest.mark.parametrize("where", ["emit", "runner"])

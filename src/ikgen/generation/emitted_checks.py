@@ -105,10 +105,11 @@ def _reports(
         return emitter.runner(arm, folder)
 
     first = None
-    before = next((k for k, one in enumerate(emitters) if one.compiled), 0)
-    with RunnersAhead([partial(make, one) for one in emitters], before) as runners:
+    in_turn = sorted(emitters, key=lambda one: one.compiled)
+    before = next((k for k, one in enumerate(in_turn) if one.compiled), 0)
+    with RunnersAhead([partial(make, one) for one in in_turn], before) as runners:
         oracle, shared = oracle_for(derivation.reading), SharedWork()
-        for emitter in emitters:
+        for emitter in in_turn:
             runner = _taken(runners, emitter, emitted)
             if runner is not None:
                 report = verify_one(
@@ -116,7 +117,7 @@ def _reports(
                 )
                 reports[emitter.name] = report
                 first = first or runner
-    return reports
+    return {one.name: reports[one.name] for one in emitters if one.name in reports}
 
 
 def _taken(runners: RunnersAhead, emitter: Emitter, emitted: Collection[str]) -> Runner | None:

@@ -46,16 +46,18 @@ class OutputChecks:
     progress: Progress
 
     def run(self) -> Checked:
-        """Run every output that can be run; the first is the one that others are compared with."""
+        """Run every output that can be run, what is compiled last; the first is the one that others are
+        compared with."""
         from ikgen.generation.emitted_checks import oracle_for
         from ikgen.generation.runners_ahead import RunnersAhead
 
         findings: list[Finding] = []
         reports: dict[str, VerificationReport] = {}
         first = None
-        with RunnersAhead(partial(self._made, name) for name in self.record.emit) as runners:
+        in_turn = sorted(self.record.emit, key=_compiles)
+        with RunnersAhead(partial(self._made, name) for name in in_turn) as runners:
             oracle, shared = oracle_for(self.reading), SharedWork()
-            for name in self.record.emit:
+            for name in in_turn:
                 runner, found = self._runner(name, runners, oracle)
                 if runner is not None:
                     report, found = self._report(name, runner, oracle, first, shared)
@@ -63,6 +65,7 @@ class OutputChecks:
                         reports[name] = report
                         first = first or runner
                 findings += [found] if found else []
+        reports = {name: reports[name] for name in self.record.emit if name in reports}
         return Checked(tuple(findings), reports)
 
     def _made(self, name: str) -> Runner | None:
@@ -128,3 +131,13 @@ class OutputChecks:
         suffix = {"python": ".py", "cpp": ".hpp"}.get(emitter, "")
         names = [n for n in self.record.files if suffix and n.endswith(suffix)]
         return self.record.folder / names[0] if names else self.record.path
+
+
+def _compiles(name: str) -> bool:
+    """Whether an output is compiled before it is run: others are checked meanwhile."""
+    from ikgen.generation.emitters import find_emitter
+
+    try:
+        return find_emitter(name).compiled
+    except IkgenError:  # told where it is to run
+        return False

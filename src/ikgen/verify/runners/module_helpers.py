@@ -30,7 +30,7 @@ Answer = tuple[Array, str, NDArray[np.bool_]]
 Solve = Callable[[Stack], list[Answer]]
 """Answers to the poses of a stack."""
 
-_PART = 256
+_PART = 1024
 """Poses solved together: how many they are changes last digits, so the number of cores has no say in it."""
 
 _MANY = 1000
