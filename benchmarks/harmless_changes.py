@@ -313,11 +313,6 @@ HARMLESS = (
         "nothing is changed in a step that ends so, and nothing in those that would follow",
     ),
     HarmlessChange(
-        "solver/session.py",
-        "def get(self, support: int, default: float = 1.0) -> float:  # type: ignore[override]",
-        "1.0", "2.0", "every support has a weight: the default is not read",
-    ),
-    HarmlessChange(
         "verify/task_space.py",
         "scale = np.divide(angle, sine, out=np.ones_like(angle), where=sine > 1e-300)",
         ">", ">=", _EQUAL,

@@ -85,7 +85,9 @@ def test_cost_counts_what_is_new_for_each_branch(arm: Constructed) -> None:
     candidate = arm.candidate(arm.tangent(factor))
 
     def cost(used: set[int], weight: dict[int, float]) -> float:
-        judged = judge(candidate, arm.truth, arm.probes, used, weight)
+        judged = judge(
+            candidate, arm.truth, arm.probes, used, lambda support: weight.get(support, 1.0)
+        )
         assert judged is not None and judged.judgement is not None
         return judged.judgement.cost
 

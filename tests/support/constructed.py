@@ -46,7 +46,7 @@ class Constructed:
 
     def judged(self, candidate: Candidate) -> Candidate | None:
         """The ranker's judgement of it."""
-        return judge(candidate, self.truth, self.probes, set(), {})
+        return judge(candidate, self.truth, self.probes, set(), lambda _: 1.0)
 
     def found(self, form: Form, leaf: str = "tangent") -> Candidate:
         """A judged candidate of this form."""

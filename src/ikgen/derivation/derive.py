@@ -40,14 +40,8 @@ def derive(
     there is no closed form, or none of a task that an arm can do whose joints the request holds.
     """
     from ikgen.kinematics.classify import classify
-    from ikgen.kinematics.free_joints import free_defaults
-    from ikgen.kinematics.whole_turns import check_couplings
 
-    if reading is None:
-        progress("read", request.robot.name)
-        reading = read(request)
-    check_couplings(reading.dh)
-    free_defaults(reading.dh, request.free.items())  # first: some values are refused
+    reading = _checked(request, progress, reading)
     file_class = classify(reading.dh).name
     progress("derive", file_class)
     check_task(request, reading.dh)
@@ -58,20 +52,53 @@ def derive(
         found.task.along(request.tool_axis)  # refuses what has no axis
     name = request.name or default_name(found.reading)
     geometry = classify(found.reading.dh)
-    again = report_command(request, found.reading, found.task)
     if not found.closed and found.plan is None:
         from ikgen.derivation.unsolved import unsolved_error
 
-        how_far = (found.task, found.graph, name, request.robot.name, again)
-        stuck = Unsolved(found.reading, geometry, *how_far)
-        raise unsolved_error(stuck, request)
+        raise unsolved_error(_unsolved(name, request, found, geometry), request)
+    again = report_command(request, found.reading, found.task)
     check_held(request, found.reading.dh, found.task, passed_over)
     found, program = settled_form(found, progress)
     module = _module(name, request, found, program, geometry)
     unasked = request.task is None
-    passed = tuple(passed_over) if unasked else ()
-    how = (found.task, found.graph, module, again, unasked, found.held, passed, file_class)
-    return Derivation(found.reading, geometry, *how)
+    return Derivation(
+        reading=found.reading,
+        geometry=geometry,
+        task=found.task,
+        graph=found.graph,
+        module=module,
+        again=again,
+        chosen=unasked,
+        held=found.held,
+        passed_over=tuple(passed_over) if unasked else (),
+        file_class=file_class,
+    )
+
+
+def _checked(request: Request, progress: Progress, reading: Reading | None) -> Reading:
+    """What the request describes, read now where it was not before. Raises `UsageError` for couplings and
+    values of held joints that no closed form can have."""
+    from ikgen.kinematics.free_joints import free_defaults
+    from ikgen.kinematics.whole_turns import check_couplings
+
+    if reading is None:
+        progress("read", request.robot.name)
+        reading = read(request)
+    check_couplings(reading.dh)
+    free_defaults(reading.dh, request.free.items())
+    return reading
+
+
+def _unsolved(name: str, request: Request, found: ClosedForm, geometry: GeometryClass) -> Unsolved:
+    return Unsolved(
+        reading=found.reading,
+        geometry=geometry,
+        task=found.task,
+        graph=found.graph,
+        name=name,
+        source_name=request.robot.name,
+        again=report_command(request, found.reading, found.task),
+    )
 
 
 def _module(

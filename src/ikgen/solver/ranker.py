@@ -7,7 +7,7 @@ vanishes at a regular configuration comes last; then fewer branches, the better 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -49,11 +49,12 @@ def judge(
     truth: tuple[NDArray[np.float64], ...],
     probes: Probes,
     used: set[int],
-    weight: Mapping[int, float],
+    weight: Callable[[int], float],
 ) -> Candidate | None:
     """The candidate with its judgement, or None if it is not a solution.
 
-    `truth` is the unknown at the probes, (c, s) or (x,).
+    `truth` is the unknown at the probes, (c, s) or (x,); `weight` says for how many branches an expression
+    with a support is computed.
     """
     generic, regular = probes.generic, probes.regular
     relative = candidate.relative_divisor()
@@ -100,7 +101,7 @@ def _folds(candidate: Candidate, regular: int) -> bool:
     return under is not None and bool(np.min(under[:regular]) < FOLD_MARGIN)
 
 
-def _cost(roots: tuple[Expr, ...], used: set[int], weight: Mapping[int, float]) -> float:
+def _cost(roots: tuple[Expr, ...], used: set[int], weight: Callable[[int], float]) -> float:
     """Operations not yet computed, each times the number of branches it is computed for."""
     seen: set[int] = set()
     total = 0.0
@@ -110,7 +111,7 @@ def _cost(roots: tuple[Expr, ...], used: set[int], weight: Mapping[int, float]) 
         if node.id in seen or node.id in used or not node.args or node.is_fixed:
             continue
         seen.add(node.id)
-        total += weight.get(node.support, 1.0) if node.op != "neg" else 0.25
+        total += weight(node.support) if node.op != "neg" else 0.25
         stack.extend(node.args)
     return total
 

@@ -138,7 +138,7 @@ class Session:
         for unknown in self.unknowns:
             truth = self.truth(unknown)
             for c in leaf.find(self.equations, unknown, self.knowledge):
-                judged = judge(c, truth, self.probes, self._used, _Weights(self))
+                judged = judge(c, truth, self.probes, self._used, self.weight_of)
                 if judged is not None:
                     self.candidates.append(judged)
                     kept += 1
@@ -197,16 +197,3 @@ class Session:
 def first_fork(steps: Sequence[Step]) -> Variable | None:
     """The first unknown that was solved with branches."""
     return next((s.candidate.unknown for s in steps if s.branches > 1), None)
-
-
-class _Weights(dict[int, float]):
-    """Lazy mapping from support mask to number of branches."""
-
-    def __init__(self, session: Session) -> None:
-        super().__init__()
-        self.session = session
-
-    def get(self, support: int, default: float = 1.0) -> float:  # type: ignore[override]
-        if support not in self:
-            self[support] = self.session.weight_of(support)
-        return self[support]
