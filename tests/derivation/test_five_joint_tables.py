@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from benchmarks.drawn import revolute, smallest_singular
 from benchmarks.solution_search import apart
-from tests.generation.test_slide_tables import table
+from tests.derivation.test_slide_tables import table
 from tests.support.sampled import sampled
 from tests.support.solving import NO_COMPILER, import_text
 
