@@ -7,10 +7,11 @@ import pytest
 from numpy.typing import NDArray
 from tests.elimination.test_elimination import arm_frames, configurations, missing
 
+from ikgen.elimination.elimination_table import finder
 from ikgen.elimination.loop_frames import forward, hold_joint, typical_length
 from ikgen.elimination.plan import _separate, choose_plan, digits_lost, ranking
 from ikgen.elimination.resultant import root_shifts
-from ikgen.elimination.routine import Plan, finder, initial_residuals
+from ikgen.elimination.routine import Plan, initial_residuals
 from ikgen.runtime.python.elimination.general_6r import candidates
 
 Array = NDArray[np.float64]

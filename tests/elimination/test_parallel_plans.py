@@ -24,15 +24,17 @@ from tests.support.parallel_arms import (
 from tests.support.six_turns import general_6r_batch
 
 from ikgen.elimination import EliminationPlan, choose_plan, hold_joint
+from ikgen.elimination.elimination_table import finder
 from ikgen.elimination.loop_frames import forward
 from ikgen.elimination.parallel_plans import (
+    ParallelKind,
     ParallelPlan,
     choose_parallel,
     parallel_plans,
     settled_share,
     with_parallel,
 )
-from ikgen.elimination.routine import Plan, finder, six_joints_batch
+from ikgen.elimination.routine import Plan, six_joints_batch
 from ikgen.runtime.python.elimination.parallel_links import MEETING, PLAIN, UPRIGHT
 
 Array = NDArray[np.float64]
@@ -74,7 +76,7 @@ def test_two_solutions_in_a_fourfold_root_are_found(off: float) -> None:
     h = 0.5 * np.pi
     alpha, a = [0.0, -h, -h, 0.0, -h, h], [0.0, 0.85, 0.82, 0.53, 0.62, 0.63]
     frames = dh_frames(alpha, a, [0.0, 0.78, 0.0, 0.0, 0.35, 0.9])
-    hidden = replace(choose_plan(frames), parallel=ParallelPlan((1, 0), UPRIGHT, 0.0))
+    hidden = replace(choose_plan(frames), parallel=ParallelPlan((1, 0), ParallelKind.UPRIGHT, 0.0))
     q = np.random.default_rng(7).uniform(-np.pi, np.pi, (300, 6))
     q[:, [0, 4]] = off
     poses = np.array([forward(frames, row) for row in q])
@@ -143,7 +145,7 @@ def test_held_joint_of_an_arm_with_seven() -> None:
     frames = np.concatenate([parallel_frames(UPRIGHT)[:6], arm_frames("random 2")[5:]])
     family = np.array([hold_joint(frames, 5, v) for v in (0.4, -1.1, 2.2)])
     plan = choose_plan(family, probes=12)
-    assert plan.parallel is not None and plan.parallel.kind == UPRIGHT
+    assert plan.parallel is not None and plan.parallel.kind is ParallelKind.UPRIGHT
     held = hold_joint(frames, 5, 1.7)
     q = configurations(held, 40)
     poses = np.array([forward(held, row) for row in q])

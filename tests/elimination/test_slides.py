@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from tests.support.multi_start import apart, searched
 
 from ikgen.elimination import EliminationPlan, choose_plan
+from ikgen.elimination.elimination_table import finder
 from ikgen.elimination.loop_frames import forward, jacobian
 from ikgen.elimination.plan import eliminations
-from ikgen.elimination.routine import Plan, finder, six_joints_batch
+from ikgen.elimination.routine import Plan, six_joints_batch
 from ikgen.runtime.python.elimination.general_6r import one_axis_each
 from ikgen.runtime.python.rows.solution_rows import distinct_rows
 

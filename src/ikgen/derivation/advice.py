@@ -154,7 +154,6 @@ def attempt(form: ClosedForm, progress: Progress) -> Attempt:
     """What a derivation came to: what would be generated of it, where it is closed."""
     from ikgen.derivation.settled_form import settled_form
     from ikgen.emit.solver_module import most_rows, refines_all
-    from ikgen.lowering.elimination_program import elimination_name
 
     most, order, left = 0, form.graph.order, form.graph.open_joints
     if form.closed or form.plan is not None:
@@ -163,7 +162,7 @@ def attempt(form: ClosedForm, progress: Progress) -> Attempt:
         most, order, left = most_rows(program.max_solutions, refined), form.graph.order, ()
     graph, task, dh = form.graph, form.task, form.reading.dh
     if form.plan is not None:
-        order = (f"all joints at once (general {elimination_name(dh)} elimination)",)
+        order = (f"all joints at once (general {form.plan.routine.words} elimination)",)
     return Attempt(
         task.name,
         dh.free,

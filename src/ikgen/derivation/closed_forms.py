@@ -240,10 +240,8 @@ def _explained(
     refused: tuple[tuple[str, ...], ...],
 ) -> ClosedForm:
     """The form with the joints that it holds, why, and the runners-up."""
-    from ikgen.lowering.elimination_program import elimination_name
-
     if form.plan is not None:
-        why = f"the general {elimination_name(form.reading.dh)} elimination"
+        why = f"the general {form.plan.routine.words} elimination"
     elif form.sound:
         why = f"closed form by rules ({taken.class_words})"
     else:

@@ -106,7 +106,6 @@ def _module(
 ) -> SolverModule:
     from ikgen.emit.solver_module import SolverModule
     from ikgen.kinematics.free_joints import free_defaults
-    from ikgen.lowering.elimination_program import elimination_name
 
     reading, graph, plan = found.reading, found.graph, found.plan
     dh = reading.dh
@@ -121,7 +120,7 @@ def _module(
         source_sha256=reading.source.sha256,
         generator_version=__version__,
         geometry=geometry.words,
-        order=(f"all joints ({elimination_name(dh)} elimination)",) if plan else graph.order,
+        order=(f"all joints ({plan.routine.words} elimination)",) if plan else graph.order,
         plan=plan,
         maintainer=request.maintainer,
         license=request.license,

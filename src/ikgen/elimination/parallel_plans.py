@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from enum import IntEnum
 
 import numpy as np
 
@@ -26,7 +27,14 @@ from ikgen.runtime.python.elimination.parallel_links import (
     parallel_links,
 )
 
-__all__ = ["ParallelPlan", "choose_parallel", "parallel_plans", "settled_share", "with_parallel"]
+__all__ = [
+    "ParallelKind",
+    "ParallelPlan",
+    "choose_parallel",
+    "parallel_plans",
+    "settled_share",
+    "with_parallel",
+]
 
 _MOST_DEVIATION = 2e-5
 """Of a kind's links from the chain's (rad, lengths over the arm's): three right angles of four digits
@@ -46,19 +54,27 @@ _NEARLY = 0.1  # shares that differ by less are the same: rounding is another on
 _WORTH = 0.3  # of the poses: with fewer solved at once the attempt costs more than it saves
 
 
+class ParallelKind(IntEnum):
+    """The kinds of links beside the parallel axes, by the numbers that the runtime knows them by."""
+
+    PLAIN = PLAIN
+    UPRIGHT = UPRIGHT
+    MEETING = MEETING
+
+
 @dataclass(frozen=True, slots=True)
 class ParallelPlan:
     """loop: (start, reverse), of which the second and third axes are parallel. kind: of the links beside
     these. deviation: how far the chain's links are from those of the kind (rad, lengths over the arm's)."""
 
     loop: tuple[int, int]
-    kind: int
+    kind: ParallelKind
     deviation: float
 
     @property
     def elimination(self) -> Elimination:
         """What `parallel_candidates` goes by."""
-        return *self.loop, self.kind
+        return *self.loop, self.kind.value
 
     @property
     def error(self) -> float:
@@ -68,7 +84,7 @@ class ParallelPlan:
     @property
     def bounded(self) -> bool:
         """Whether bounds of what the deviation does to the polynomial leave few poses in doubt."""
-        return self.kind == PLAIN or self.deviation < _EXACT
+        return self.kind is ParallelKind.PLAIN or self.deviation < _EXACT
 
 
 def choose_parallel(family: Matrix) -> ParallelPlan | None:
@@ -93,20 +109,20 @@ def parallel_plans(family: Matrix) -> tuple[ParallelPlan, ...]:
     parts = [_deviations(member) for member in family]
     every = {e: max(part[e] for part in parts) for e in parts[0] if all(e in p for p in parts)}
     found = [min((e for e in every if e[:2] == loop), default=None) for loop in _LOOPS]
-    return tuple(ParallelPlan(e[:2], e[2], every[e]) for e in found if e is not None)
+    return tuple(ParallelPlan(e[:2], ParallelKind(e[2]), every[e]) for e in found if e is not None)
 
 
 def _deviations(frames: Matrix) -> dict[Elimination, float]:
     """Of one chain (7, 4, 4)."""
     length = typical_length(frames)
     scaled = over(frames, length)
-    out = {}
+    out: dict[Elimination, float] = {}
     for start, reverse in _LOOPS:
         _, C = loop_constants([*scaled[:, None]], np.eye(4)[None], start, reverse)
         links = links_of(parallel_links(C))
         if min(1.0 - links.c1**2, 1.0 - links.c3**2, links.a2**2) < _APART**2:
             continue
-        for kind in (PLAIN, UPRIGHT, MEETING):
+        for kind in ParallelKind:
             off = float(deviation(kind, links)[0, 0])
             if off <= _MOST_DEVIATION:
                 out[start, reverse, kind] = off

@@ -17,10 +17,15 @@ from itertools import product
 
 import numpy as np
 
+from ikgen.elimination.elimination_table import (
+    EliminationRoutine,
+    elimination_routine,
+    finder,
+)
 from ikgen.elimination.loop_frames import forward, jacobian, over, typical_length
 from ikgen.elimination.parallel_plans import ParallelPlan, choose_parallel
 from ikgen.elimination.resultant import RESULTANTS, Resultant, root_shifts
-from ikgen.elimination.routine import Elimination, Plan, Turning, finder, initial_residuals
+from ikgen.elimination.routine import Elimination, Plan, Turning, initial_residuals
 from ikgen.kinematics.rigid import read_only
 from ikgen.model.joint_tree import Matrix
 from ikgen.runtime.python.arm.chain_kinematics import Motion
@@ -47,8 +52,6 @@ _FINE = -8.0  # logarithm of errors below which they no longer count
 _ALIKE = 0.3  # digits lost on average, which rounding moves by less than a tenth
 _KEPT = 2
 _SPECIAL_PROBES = 3
-_MOST = (16, 16, 8, 2)
-"""Solutions by the number of slides (Raghavan and Roth 1993)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,6 +86,12 @@ class EliminationPlan:
     both: bool = False
 
     @property
+    def routine(self) -> EliminationRoutine:
+        """Which elimination it is."""
+        coupled = bool(self.motions)
+        return elimination_routine(self.turning.count(False), both=self.both, coupled=coupled)
+
+    @property
     def coupled(self) -> int:
         """The joint that turns several axes, among those that move."""
         return coupled_and_others(self.motions)[0]
@@ -96,9 +105,7 @@ class EliminationPlan:
     @property
     def most(self) -> int:
         """Solutions at most, a power of two."""
-        if self.motions:
-            return 1 << (2 * self.degree - 1).bit_length()
-        return _MOST[self.turning.count(False)]
+        return self.routine.most or 1 << (2 * self.degree - 1).bit_length()
 
     @property
     def usable(self) -> bool:

@@ -14,26 +14,17 @@ from ikgen.program.policy import SolvePolicy
 from ikgen.runtime.python.arm.solve_policy import Policy
 from ikgen.runtime.python.elimination.general_6r import (
     Elimination,
-    Finder,
     Plan,
-    candidates,
     refined_rows,
     six_joint_rows,
 )
-from ikgen.runtime.python.elimination.one_slide import (
-    one_slide_both_candidates,
-    one_slide_candidates,
-)
 from ikgen.runtime.python.elimination.six_joints import six_joints
-from ikgen.runtime.python.elimination.three_slides import three_slide_candidates
-from ikgen.runtime.python.elimination.two_slides import two_slide_candidates
 from ikgen.runtime.python.rows.solution_rows import Turning, distinct_rows
 
 __all__ = [
     "Elimination",
     "Plan",
     "Turning",
-    "finder",
     "initial_residuals",
     "runtime_policy",
     "six_joints_batch",
@@ -45,20 +36,6 @@ def runtime_policy(given: SolvePolicy) -> Policy:
     stages = tuple((s.steps, s.fine, s.promising) for s in given.refinement)
     names = [field.name for field in fields(Policy) if field.name != "refinement"]
     return Policy(**{name: getattr(given, name) for name in names}, refinement=stages)
-
-
-_FINDERS: tuple[Finder, ...] = (
-    candidates,
-    one_slide_candidates,
-    two_slide_candidates,
-    three_slide_candidates,
-)
-
-
-def finder(turning: Turning, *, both: bool = False) -> Finder:
-    """The function that finds candidates of six joints of which some slide; of one slide by half angles of
-    `both` angles beside the hidden one, or of either."""
-    return one_slide_both_candidates if both else _FINDERS[turning.count(False)]
 
 
 def six_joints_batch(frames: Matrix, plan: Plan, poses: Matrix) -> list[Matrix]:

@@ -6,6 +6,7 @@ import numpy as np
 
 from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
+from ikgen.elimination.elimination_table import elimination_routine
 from ikgen.kinematics.whole_turns import middle_of
 from ikgen.lowering.frames import file_frames, operand_of
 from ikgen.lowering.joint_values import joint_expression, variable_lets
@@ -15,24 +16,7 @@ from ikgen.program.liveness import trimmed
 from ikgen.program.ops import Op
 from ikgen.program.statements import Call, Comment, JointOutput, Let, Level, Program, Statement
 
-__all__ = ["elimination_name", "elimination_program"]
-
-_ROUTINES = ("general_6r", "one_slide", "two_slides", "three_slides")
-_NAMES = ("6R", "5R1P", "4R2P", "3R3P")
-
-
-def _slides(dh: DHChain) -> int:
-    return sum(not row.revolute for row in dh.rows if dh.joints[row.driver].name not in dh.free)
-
-
-def elimination_name(dh: DHChain) -> str:
-    """The elimination's class: how many of the moving joints turn and slide."""
-    return "coupled 6R" if _coupled(dh) else _NAMES[_slides(dh)]
-
-
-def _coupled(dh: DHChain) -> bool:
-    """Whether a joint moves several axes."""
-    return len(dh.rows) > dh.dof
+__all__ = ["elimination_program"]
 
 
 def elimination_program(
@@ -56,11 +40,12 @@ def elimination_program(
     found = tuple(name for j in moving for name in _names(dh, j))
     if tool is not None:
         found += (f"c{dh.dof + 1}", f"s{dh.dof + 1}")
-    routine = "coupled_6r" if _coupled(dh) else _ROUTINES[_slides(dh)]
-    call = Call(routine + "_both" * both, (*entries, *given), found)
+    slides = sum(not dh.lead_row(j).revolute for j in moving)
+    routine = elimination_routine(slides, both=both, coupled=len(dh.rows) > dh.dof)
+    call = Call(routine.name, (*entries, *given), found)
     values = [_value(dh, j) for j in moving]
     body: tuple[Statement, ...] = (
-        Comment(f"all joints at once: the general {elimination_name(dh)} elimination"),
+        Comment(f"all joints at once: the general {routine.words} elimination"),
         *(Let(f"q{j + 1}", operand_of(e)) for j, e in zip(moving, values, strict=True)),
     )
     levels = (Level(1, None, None, completed), Level(most, None, call, body))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from ikgen.elimination.elimination_table import ELIMINATIONS
 from ikgen.emit.blanks import blanks, pairs
 from ikgen.emit.cpp.cpp_language import CONSTANT, comment, declared, literal, number
 from ikgen.emit.cpp.cpp_policy import policy_lines
@@ -173,7 +174,7 @@ def _headers(module: SolverModule) -> list[str]:
         "solving/single_solve.hpp" if _careful(module) else "solving/lane_solve.hpp",
     ]
     needed += ["roots/routine_roots.hpp"] * bool(routines)
-    needed += [_ROUTINES.get(name, f"elimination/{name}.hpp") for name in routines]
+    needed += [_header_of(name) for name in routines]
     needed += ["elimination/parallel_6r.hpp"] * bool(_parallel_kind(module))
     needed += ["arm/tool_joint.hpp"] * (module.plan is not None and module.plan.tool is not None)
     needed += ["newton/lane_refinement.hpp"] * _newton(module)
@@ -186,25 +187,12 @@ def _headers(module: SolverModule) -> list[str]:
     return [*needed, searches[min(len(module.held), 2)]]
 
 
-_ROUTINES = {
-    "general_6r": "elimination/general_6r_arm.hpp",
-    "trig_polynomial": "roots/trig_polynomial.hpp",
-    "trig_quartic": "roots/trig_quartic.hpp",
-    "trig_quartic_wide": "roots/trig_quartic_wide.hpp",
-}
-"""Headers of routines that are no elimination named after them."""
-
-_PARALLEL_KINDS = ("kPlain", "kUpright", "kMeeting")
-
-_ELIMINATIONS = {
-    "general_6r": "General6r",
-    "one_slide": "OneSlide",
-    "one_slide_both": "OneSlideBoth",
-    "two_slides": "TwoSlides",
-    "three_slides": "ThreeSlides",
-    "coupled_6r": "Coupled6r",
-}
-"""The class of each elimination."""
+def _header_of(routine: str) -> str:
+    """The runtime's header that has a routine."""
+    if routine == "general_6r":  # the header of that name is of its numbers alone
+        return "elimination/general_6r_arm.hpp"
+    folder = "elimination" if any(row.name == routine for row in ELIMINATIONS) else "roots"
+    return f"{folder}/{routine}.hpp"
 
 
 def _elimination(module: SolverModule) -> dict[str, object]:
@@ -212,9 +200,10 @@ def _elimination(module: SolverModule) -> dict[str, object]:
     calls = [level.call for level in module.program.levels if level.call is not None]
     if module.plan is None:
         return {"routine": ""}
+    name = "parallel_6r" if _parallel_kind(module) else calls[0].routine
     return {
         "routine": calls[0].routine,
-        "elimination": "Parallel6r" if _parallel_kind(module) else _ELIMINATIONS[calls[0].routine],
+        "elimination": "".join(part.capitalize() for part in name.split("_")),
         "parallel_kind": _parallel_kind(module),
         "numbers": len(calls[0].names),
         "all_turn": all(module.plan.turning),
@@ -225,7 +214,7 @@ def _parallel_kind(module: SolverModule) -> str:
     """The kind of the elimination about two parallel axes that comes before the general one; empty where
     there is none, or where its polynomial would leave most poses to that."""
     plan = module.plan.parallel if module.plan is not None else None
-    return _PARALLEL_KINDS[plan.kind] if plan is not None and plan.bounded else ""
+    return f"k{plan.kind.name.title()}" if plan is not None and plan.bounded else ""
 
 
 def _size_text(module: SolverModule) -> str:

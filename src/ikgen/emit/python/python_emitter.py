@@ -54,6 +54,7 @@ def shell_values(module: SolverModule) -> dict[str, Any]:
         "scalar": scalar_lines(module),
         "batch": batch_lines(module),
         "routines": sorted({lv.call.routine for lv in program.levels if lv.call is not None}),
+        "finder": _finder(module),
         "seeds": _seed_rows(module),
         "shape": [level.branches for level in program.levels[1:]],
         "frames": [[[expression(SCALAR, x) for x in row] for row in F] for F in program.frames],
@@ -81,6 +82,15 @@ def shell_values(module: SolverModule) -> dict[str, Any]:
         "policy": module.policy,
         "policy_values": _policy_values(runtime_policy(module.policy)),
     }
+
+
+def _finder(module: SolverModule) -> dict[str, str] | None:
+    """Where the runtime has what finds an elimination's candidates, and what the module calls it."""
+    if module.plan is None:
+        return None
+    find = module.plan.routine.find
+    alias = "_CoupledAngle" if isinstance(find, type) else "_candidates"
+    return {"module": find.__module__.split(".")[-1], "name": find.__name__, "alias": alias}
 
 
 def known_facts(module: SolverModule) -> Facts:

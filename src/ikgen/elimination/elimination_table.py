@@ -1,0 +1,60 @@
+"""The eliminations there are: what a Program calls, emitted code embeds, and people read of each."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ikgen.runtime.python.elimination.coupled_angle import CoupledAngle
+from ikgen.runtime.python.elimination.general_6r import Finder, candidates
+from ikgen.runtime.python.elimination.one_slide import (
+    one_slide_both_candidates,
+    one_slide_candidates,
+)
+from ikgen.runtime.python.elimination.three_slides import three_slide_candidates
+from ikgen.runtime.python.elimination.two_slides import two_slide_candidates
+from ikgen.runtime.python.rows.solution_rows import Turning
+
+__all__ = ["ELIMINATIONS", "EliminationRoutine", "elimination_routine", "finder"]
+
+
+@dataclass(frozen=True, slots=True)
+class EliminationRoutine:
+    """One elimination of six joints. `name`: the routine that a Program calls, after which C++ calls its
+    class; `words`: how many of the joints turn and slide; `find`: what finds candidates in Python, or what
+    makes that of the chain's axes; `most`: solutions at most (Raghavan and Roth 1993), None where they
+    depend on the chain. `both`: by half angles of both angles beside the hidden one; `coupled`: one joint
+    moves several axes."""
+
+    name: str
+    words: str
+    slides: int
+    find: Finder | type[CoupledAngle]
+    most: int | None = None
+    both: bool = False
+    coupled: bool = False
+
+
+ELIMINATIONS = (
+    EliminationRoutine("general_6r", "6R", 0, candidates, 16),
+    EliminationRoutine("one_slide", "5R1P", 1, one_slide_candidates, 16),
+    EliminationRoutine("one_slide_both", "5R1P", 1, one_slide_both_candidates, 16, both=True),
+    EliminationRoutine("two_slides", "4R2P", 2, two_slide_candidates, 8),
+    EliminationRoutine("three_slides", "3R3P", 3, three_slide_candidates, 2),
+    EliminationRoutine("coupled_6r", "coupled 6R", 0, CoupledAngle, coupled=True),
+)
+
+
+def elimination_routine(
+    slides: int, *, both: bool = False, coupled: bool = False
+) -> EliminationRoutine:
+    """The elimination of six joints of which so many slide."""
+    asked = (slides, both, coupled)
+    return next(row for row in ELIMINATIONS if (row.slides, row.both, row.coupled) == asked)
+
+
+def finder(turning: Turning, *, both: bool = False) -> Finder:
+    """The function that finds candidates of six joints of which some slide; of one slide by half angles of
+    `both` angles beside the hidden one, or of either."""
+    find = elimination_routine(turning.count(False), both=both).find
+    assert not isinstance(find, type)
+    return find
