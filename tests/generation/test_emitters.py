@@ -1,4 +1,4 @@
-"""What another package's emitter does not write is refused before it is asked."""
+"""Which file of an output has the solver; what another package's emitter does not write is refused."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tests.support.solving import FIXTURES
 from ikgen.derivation.derive import derive
 from ikgen.emit.derivation import Derivation
 from ikgen.errors import UsageError
-from ikgen.generation.emitters import Emitter
+from ikgen.generation.emitters import EMITTERS, Emitter
 from ikgen.plugins import PlugIn
 from ikgen.records.request import Request
 
@@ -71,3 +71,21 @@ def test_an_arm_that_needs_more_is_refused(
 def test_others_are_written(tmp_path: Path) -> None:
     derivation = derive(Request(write_robot(tmp_path / "elbow.urdf"), task="position"))
     assert not derivation.module.beyond and ADA.emit(derivation)
+
+
+def test_each_output_knows_the_file_with_its_solver(tmp_path: Path) -> None:
+    derivation = derive(
+        Request(write_robot(tmp_path / "elbow.urdf"), task="position", name="Elbow")
+    )
+    texts = {row.name: row.emit(derivation) for row in EMITTERS if row.runner_target is not None}
+    every = [file for files in texts.values() for file in files]
+    found = {row.name: row.main_among(every, "Elbow") for row in EMITTERS if row.name in texts}
+    assert found == {
+        "python": "Elbow_ik.py",
+        "cpp": "Elbow_ik.hpp",
+        "cpp-package": "Elbow_ik_cpp/include/Elbow_ik.hpp",
+        "nanobind": "Elbow_ik_ext/Elbow_ik.hpp",
+        "moveit": "elbow_ik_moveit/include/elbow_ik_moveit/Elbow_ik.hpp",
+    }
+    assert all(found[name] in files for name, files in texts.items())
+    assert EMITTERS[0].main_among(every, "other") is None and ADA.main_among(every, "Elbow") is None

@@ -13,6 +13,7 @@ from ikgen.cli.console import Console
 from ikgen.cli.error_output import ResultError
 from ikgen.cli.options import chain_options, console_options, force_option, sampling_options
 from ikgen.cli.request_options import make_request
+from ikgen.generation.emitters import EMITTERS
 from ikgen.records.request import Outputs
 
 __all__ = ["report"]
@@ -33,7 +34,7 @@ __all__ = ["report"]
 @click.option(
     "--emit",
     multiple=True,
-    type=click.Choice(["sympy"]),
+    type=click.Choice([row.name for row in EMITTERS if row.with_report]),
     help="Also write the solutions and equations as a module of SymPy expressions.",
 )
 @force_option

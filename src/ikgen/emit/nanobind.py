@@ -16,11 +16,16 @@ from ikgen.emit.solver_module import SolverModule
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Derivation
 
-__all__ = ["emit", "emit_derivation"]
+__all__ = ["emit", "emit_derivation", "package_folder"]
 
 _FILES = ("pyproject.toml", "CMakeLists.txt", "README.md", "native.cpp")
 _PACKAGE = ("_native.pyi", "py.typed")
 _ARGUMENTS = Path(__file__).resolve().parents[1] / "runtime" / "nanobind" / "array_arguments.hpp"
+
+
+def package_folder(name: str) -> str:
+    """The package of an arm, and its folder."""
+    return f"{name}_ik_ext"
 
 
 def emit_derivation(derivation: Derivation) -> dict[str, str]:
@@ -30,7 +35,7 @@ def emit_derivation(derivation: Derivation) -> dict[str, str]:
 
 def emit(module: SolverModule) -> dict[str, str]:
     """Relative path -> text: what `pip install ./<name>_ik_ext` needs, the header included."""
-    package = f"{module.name}_ik_ext"
+    package = package_folder(module.name)
     paths = {f"{package}/{file}": file for file in _FILES}
     paths |= {f"{package}/{package}/{file}": file for file in _PACKAGE}
     values = {

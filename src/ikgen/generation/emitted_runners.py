@@ -80,7 +80,9 @@ def cpp_package_runner(arm: EmittedArm, folder: Path) -> CppHeader | JointRunner
 
 def nanobind_runner(arm: EmittedArm, folder: Path) -> CppHeader | JointRunner:
     """The header in the package to compile, as for `cpp_runner`."""
-    return cpp_runner(arm, folder / f"{arm.name}_ik_ext")
+    from ikgen.emit.nanobind import package_folder
+
+    return cpp_runner(arm, folder / package_folder(arm.name))
 
 
 def moveit_runner(arm: EmittedArm, folder: Path) -> CppHeader:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
+from fnmatch import fnmatchcase
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from ikgen.verify.runners.runner import Runner
     from ikgen.verify.verification_report import VerificationReport
 
-__all__ = ["EMITTERS", "Emitter", "find_emitter"]
+__all__ = ["EMITTERS", "Emitter", "find_emitter", "solver_files"]
 
 GROUP = "ikgen.emitters"
 
@@ -29,9 +30,10 @@ class Emitter:
     `tells_verification`, the reports of the other outputs by name) and gives file name -> text;
     `runner_target` "module:function" takes the `EmittedArm` and the folder of the finished files
     and gives a verification runner (none: the output is not run), which of one that is `compiled`
-    starts a compiler: such an output comes first, others meanwhile. `plug_in` is set for an emitter of
-    another package, which its failures then name; `beyond` says which of `SolverModule.beyond` that one
-    writes: arms that need others are refused."""
+    starts a compiler: such an output comes first, others meanwhile. `main_file` is the file that has the
+    solver, `{name}` the arm's and `*` any part of a name; `with_report` offers it to `ikgen report`.
+    `plug_in` is set for an emitter of another package, which its failures then name; `beyond` says which of
+    `SolverModule.beyond` that one writes: arms that need others are refused."""
 
     name: str
     words: str
@@ -41,6 +43,8 @@ class Emitter:
     plug_in: PlugIn | None = None
     compiled: bool = False
     beyond: tuple[str, ...] = ()
+    main_file: str = ""
+    with_report: bool = False
 
     def emit(
         self, derivation: Derivation, reports: Mapping[str, VerificationReport] | None = None
@@ -67,6 +71,15 @@ class Emitter:
             runner: Runner = _load(self.runner_target)(arm, folder)
         return runner
 
+    def main_among(self, files: Iterable[str], name: str) -> str | None:
+        """The file (relative) of the arm `name` that has its solver; None where none of these is."""
+        wanted = self.main_file.format(name=name).split("/")
+        for file in files:
+            parts = file.split("/")
+            if len(parts) == len(wanted) and all(map(fnmatchcase, parts, wanted)):
+                return file
+        return None
+
     def _blamed(self) -> AbstractContextManager[None]:
         return nullcontext() if self.plug_in is None else self.plug_in.blamed()
 
@@ -83,6 +96,7 @@ EMITTERS: tuple[Emitter, ...] = (
         "a self-contained Python module, NumPy only",
         "ikgen.emit.python.python_emitter:emit_derivation",
         "ikgen.generation.emitted_runners:python_runner",
+        main_file="{name}_ik.py",
     ),
     Emitter(
         "cpp",
@@ -90,6 +104,7 @@ EMITTERS: tuple[Emitter, ...] = (
         "ikgen.emit.cpp.cpp_emitter:emit_derivation",
         "ikgen.generation.emitted_runners:cpp_runner",
         compiled=True,
+        main_file="{name}_ik.hpp",
     ),
     Emitter(
         "cpp-package",
@@ -97,6 +112,7 @@ EMITTERS: tuple[Emitter, ...] = (
         "ikgen.emit.cpp.cpp_package:emit_derivation",
         "ikgen.generation.emitted_runners:cpp_package_runner",
         compiled=True,
+        main_file="*/include/{name}_ik.hpp",
     ),
     Emitter(
         "nanobind",
@@ -104,6 +120,7 @@ EMITTERS: tuple[Emitter, ...] = (
         "ikgen.emit.nanobind:emit_derivation",
         "ikgen.generation.emitted_runners:nanobind_runner",
         compiled=True,
+        main_file="*/{name}_ik.hpp",
     ),
     Emitter(
         "moveit",
@@ -111,6 +128,7 @@ EMITTERS: tuple[Emitter, ...] = (
         "ikgen.emit.moveit:emit_derivation",
         "ikgen.generation.emitted_runners:moveit_runner",
         compiled=True,
+        main_file="*/include/*/{name}_ik.hpp",
     ),
     Emitter(
         "report",
@@ -122,8 +140,16 @@ EMITTERS: tuple[Emitter, ...] = (
         "sympy",
         "its solutions and equations as a Python module of SymPy expressions",
         "ikgen.symbolic.sympy_module:emit_derivation",
+        main_file="{name}_sympy.py",
+        with_report=True,
     ),
 )
+
+
+def solver_files(name: str) -> tuple[str, ...]:
+    """The files of the arm `name` that are a solver by themselves, beside its record."""
+    mains = (row.main_file for row in EMITTERS if row.runner_target is not None)
+    return tuple(main.format(name=name) for main in mains if "/" not in main)
 
 
 def find_emitter(name: str) -> Emitter:

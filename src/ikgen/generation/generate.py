@@ -13,7 +13,7 @@ from ikgen.derivation.progress import Progress, silent
 from ikgen.derivation.read import default_name, read
 from ikgen.errors import IkgenError, UnsolvedChainError, VerificationError
 from ikgen.generation.emitted_checks import verify_emitted
-from ikgen.generation.emitters import Emitter, find_emitter
+from ikgen.generation.emitters import Emitter, find_emitter, solver_files
 from ikgen.outputs.earlier import earlier_outputs
 from ikgen.outputs.journal import complete_folder
 from ikgen.outputs.new_records import record_texts
@@ -72,7 +72,8 @@ def generate(request: Request, outputs: Outputs, progress: Progress = silent) ->
     removed = tuple(earlier.outdated([outputs.out / name for name in texts]))
     files = publish(outputs.out, texts, removed)
     seconds = time.perf_counter() - started
-    left = left_over(outputs.out, derivation.module.name, files)
+    solvers = (outputs.out / name for name in solver_files(derivation.module.name))
+    left = left_over(solvers, files)
     return Generation(derivation, files, made.reports, seconds, kept, removed, left)
 
 

@@ -96,12 +96,12 @@ def compile(arm: Arm) -> CompiledArm:
     Needs a C++ compiler, Eigen and the package nanobind (`MissingToolError` says what is missing). Raises
     `VerificationError` where it does not compile, or its rows are not those of the Python module.
     """
-    from ikgen.emit.nanobind import emit
+    from ikgen.emit.nanobind import emit, package_folder
 
     if not isinstance(arm, Arm):
         raise wrong("arm", arm, "what ikgen.load gives: ikgen.compile(arm)")
     texts = emit(arm.derivation.whole.module)
-    package = f"{arm.name}_ik_ext"
+    package = package_folder(arm.name)
     folder = cache_folder() / "compiled" / _key(texts)
     if not list((folder / package).glob("_native*")):
         folder.parent.mkdir(parents=True, exist_ok=True)

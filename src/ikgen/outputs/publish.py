@@ -81,9 +81,8 @@ def _bytes(content: Content) -> bytes:
     return content if isinstance(content, bytes) else content.encode()
 
 
-def left_over(folder: Path, name: str, files: Collection[Path]) -> tuple[Path, ...]:
-    """Solvers of the name `name` in a folder that an earlier run generated and that are not of `files`."""
-    paths = [folder / f"{name}_ik{suffix}" for suffix in (".py", ".hpp")]
+def left_over(paths: Iterable[Path], files: Collection[Path]) -> tuple[Path, ...]:
+    """Those of the paths that an earlier run generated and that are not of `files`."""
     return tuple(path for path in paths if path not in files and is_generated(path))
 
 

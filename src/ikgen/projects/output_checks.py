@@ -128,9 +128,13 @@ class OutputChecks:
 
     def _file(self, emitter: str) -> Path:
         """The file to name in messages about an output."""
-        suffix = {"python": ".py", "cpp": ".hpp"}.get(emitter, "")
-        names = [n for n in self.record.files if suffix and n.endswith(suffix)]
-        return self.record.folder / names[0] if names else self.record.path
+        from ikgen.generation.emitters import find_emitter
+
+        try:
+            main = find_emitter(emitter).main_among(self.record.files, self.record.name)
+        except IkgenError:  # of a package that is gone, or that is broken
+            main = None
+        return self.record.path if main is None else self.record.folder / main
 
 
 def _compiles(name: str) -> bool:

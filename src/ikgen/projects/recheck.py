@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from ikgen.derivation.progress import Progress, silent
 from ikgen.derivation.read import read
 from ikgen.errors import UnknownNameError, UsageError
+from ikgen.generation.emitters import solver_files
 from ikgen.importers.named_robots import is_named
 from ikgen.outputs.journal import half_in_place
 from ikgen.outputs.publish import left_over
@@ -82,7 +83,8 @@ def _left_over(record: Record) -> list[Finding]:
     """Outputs of an earlier run beside those of the record, which nobody keeps up to date."""
     message = "is of an earlier run and not in the record, so that nothing keeps it right"
     hint = f"remove it, or generate again with --emit {','.join(record.emit)},..."
-    found = left_over(record.folder, record.name, [record.folder / name for name in record.files])
+    solvers = (record.folder / name for name in solver_files(record.name))
+    found = left_over(solvers, [record.folder / name for name in record.files])
     return [Finding(path, message, hint=hint) for path in found]
 
 

@@ -11,4 +11,5 @@ RUST = Emitter(
     "a Rust crate without dependencies",
     "ikgen_rust.emit:emit_derivation",
     "ikgen_rust.runner:rust_runner",
+    main_file="{name}_ik_rs/src/lib.rs",
 )
