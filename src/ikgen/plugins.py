@@ -10,16 +10,28 @@ from typing import TypeVar
 
 from ikgen.errors import IkgenError, PlugInError
 
-__all__ = ["GROUPS", "PlugIn", "find_plug_in", "plug_ins"]
+__all__ = ["GROUPS", "PlugIn", "PlugInGroup", "find_plug_in", "plug_ins"]
 
-GROUPS: dict[str, str] = {
-    "ikgen.importers": "importer",
-    "ikgen.emitters": "emitter",
-    "ikgen.leaves": "leaf",
-    "ikgen.tasks": "task",
-    "ikgen.trees": "behavior tree",
+
+@dataclass(frozen=True, slots=True)
+class PlugInGroup:
+    """What the entries of a group are, in words and by their class ("module:name"); `own` is ikgen's list
+    of those that are found by name ("": others than ikgen's are found otherwise)."""
+
+    words: str
+    kind: str
+    own: str = ""
+
+
+GROUPS = {
+    "ikgen.importers": PlugInGroup("importer", "ikgen.importers:Importer"),  # found by suffix
+    "ikgen.emitters": PlugInGroup("emitter", "ikgen.generation.emitters:Emitter", "EMITTERS"),
+    "ikgen.leaves": PlugInGroup("leaf", "ikgen.solver.leaves:Leaf"),  # all are taken
+    "ikgen.tasks": PlugInGroup("task", "ikgen.tasks:Task", "TASKS"),
+    "ikgen.trees": PlugInGroup(
+        "behavior tree", "ikgen.solver.behavior_tree:Tree"
+    ),  # takes ikgen's place
 }
-"""Entry-point group -> what its entries are."""
 
 T = TypeVar("T")
 
@@ -38,7 +50,7 @@ class PlugIn:
     @property
     def words(self) -> str:
         """What it is, for messages."""
-        return f"{GROUPS[self.group]} '{self.name}' of {self.package} ({self.target})"
+        return f"{GROUPS[self.group].words} '{self.name}' of {self.package} ({self.target})"
 
     def load(self, kind: type[T]) -> T:
         """The object of the entry point, or what it returns if it is a function without arguments.
@@ -86,7 +98,8 @@ def find_plug_in(group: str, name: str) -> PlugIn | None:
     if len(found) > 1:
         packages = " and ".join(one.package for one in found)
         raise PlugInError(
-            f"{GROUPS[group]} '{name}' is offered by {packages}", hint="keep one of the packages"
+            f"{GROUPS[group].words} '{name}' is offered by {packages}",
+            hint="keep one of the packages",
         )
     return found[0] if found else None
 

@@ -13,7 +13,7 @@ import pytest
 import ikgen
 from ikgen.cli.main import run
 from ikgen.errors import MissingToolError, UnknownNameError
-from ikgen.importers import load_tree
+from ikgen.importers import load_tree, taken_arguments
 from ikgen.importers.named_robots import find_robot, is_named, robot_names
 
 ELBOW = Path(__file__).resolve().parents[2] / "examples/setuptools_robot/urdf/elbow.urdf"
@@ -137,3 +137,8 @@ def test_robot_descriptions_are_read_with_their_arguments(
     )
     with pytest.raises(UnknownNameError):
         find_robot("robot_descriptions:knee")
+    text = (folder / "elbow.urdf.xacro").read_text()
+    argument = '<x:arg xmlns:x="http://www.ros.org/wiki/xacro" name="hand" default="none"/>'
+    (folder / "elbow.urdf.xacro").write_text(text.replace("</robot>", f"{argument}</robot>"))
+    assert taken_arguments("robot_descriptions:elbow") == {"hand": "none"}
+    assert taken_arguments("robot_descriptions:knee") == {}

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from ikgen.errors import BadDescriptionError, UsageError
-from ikgen.importers import IMPORTERS, importer_of, load_tree
+from ikgen.importers import IMPORTERS, importer_of, load_tree, taken_arguments
 
 FIXTURES = Path(__file__).parents[2] / "urdf_fixtures"
 
@@ -19,6 +19,18 @@ FIXTURES = Path(__file__).parents[2] / "urdf_fixtures"
 def test_every_row_has_its_module_and_its_test(row):
     assert find_spec(row.module) is not None
     assert (Path(__file__).parent / f"test_{row.kind}.py").is_file()
+
+
+def test_rows_say_what_files_take_and_take_in(tmp_path):
+    file = tmp_path / "arm.xacro"
+    file.write_text(
+        '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="arm">'
+        '<xacro:arg name="hand" default="none"/></robot>'
+    )
+    assert taken_arguments(file) == {"hand": "none"} and not importer_of(file).self_contained
+    assert taken_arguments(FIXTURES / "ur5e.urdf") == {}
+    assert importer_of(FIXTURES / "ur5e.urdf").self_contained
+    assert taken_arguments(tmp_path / "arm.sdf") == {}
 
 
 @pytest.mark.parametrize(

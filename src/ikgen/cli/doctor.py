@@ -41,7 +41,7 @@ def _record(needed: list[Thing], optional: list[Thing], others: list[Offer]) -> 
         "tools": {thing.name: thing.found for thing in optional},
         "plug_ins": [
             {
-                "kind": GROUPS[o.plug_in.group],
+                "kind": GROUPS[o.plug_in.group].words,
                 "name": o.plug_in.name,
                 "target": o.plug_in.target,
                 "package": o.plug_in.package,
@@ -62,7 +62,11 @@ def _text(needed: list[Thing], optional: list[Thing], others: list[Offer]) -> st
     parts = [table(rows, indent="")]
     if others:
         listed = [
-            (f"{GROUPS[o.plug_in.group]} '{o.plug_in.name}'", o.plug_in.package, o.plug_in.target)
+            (
+                f"{GROUPS[o.plug_in.group].words} '{o.plug_in.name}'",
+                o.plug_in.package,
+                o.plug_in.target,
+            )
             for o in others
         ]
         parts.append("from other packages:\n" + table(listed))

@@ -214,16 +214,15 @@ def read_tree(request: Request) -> JointTree:
             trust=request.trust,
         )
     except BadDescriptionError as error:
-        if request.robot.suffix.lower() == ".xacro":
-            error.hint = "\n".join(filter(None, [error.hint, _taken_arguments(request)]))
+        error.hint = "\n".join(filter(None, [error.hint, _argument_words(request)]))
         raise
 
 
-def _taken_arguments(request: Request) -> str:
-    """The arguments that a xacro file takes, in words; "" where there are none."""
-    from ikgen.importers.xacro.declared_arguments import declared_arguments
+def _argument_words(request: Request) -> str:
+    """The arguments that the file takes, in words; "" where there are none."""
+    from ikgen.importers import taken_arguments
 
-    found = declared_arguments(request.robot, request.package_paths)
+    found = taken_arguments(request.robot, request.package_paths)
     words = (f"{n}:={x}" if x is not None else f"{n} (no default)" for n, x in found.items())
     return f"arguments that the file takes (--arg): {', '.join(words)}" if found else ""
 

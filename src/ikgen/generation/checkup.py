@@ -6,6 +6,7 @@ import shlex
 import shutil
 from collections.abc import Callable
 from dataclasses import dataclass
+from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
@@ -131,23 +132,9 @@ def _problem(plug_in: PlugIn) -> str:
 
 
 def _registry(group: str) -> tuple[type, set[str]]:
-    """What an entry of a group must be, and the names that ikgen has itself."""
-    if group == "ikgen.importers":
-        from ikgen.importers import Importer
-
-        return Importer, set()  # chosen by suffix, not by name
-    if group == "ikgen.emitters":
-        from ikgen.generation.emitters import EMITTERS, Emitter
-
-        return Emitter, {row.name for row in EMITTERS}
-    if group == "ikgen.leaves":
-        from ikgen.solver.leaves import Leaf
-
-        return Leaf, set()
-    if group == "ikgen.trees":
-        from ikgen.solver.behavior_tree import Tree
-
-        return Tree, set()  # takes the place of ikgen's own, whatever its name
-    from ikgen.tasks import TASKS, Task
-
-    return Task, {row.name for row in TASKS}
+    """What an entry of a group must be, and the names by which ikgen finds its own."""
+    row = GROUPS[group]
+    name, kind = row.kind.split(":")
+    module = import_module(name)
+    own = getattr(module, row.own) if row.own else ()
+    return getattr(module, kind), {one.name for one in own}

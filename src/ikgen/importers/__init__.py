@@ -15,14 +15,14 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Protocol, cast
 
-from ikgen.errors import BadDescriptionError, PlugInError, UsageError
+from ikgen.errors import BadDescriptionError, IkgenError, PlugInError, UsageError
 from ikgen.importers.named_robots import find_robot, is_named
 from ikgen.plugins import PlugIn, plug_ins
 
 if TYPE_CHECKING:
     from ikgen.model.joint_tree import JointTree
 
-__all__ = ["IMPORTERS", "Importer", "importer_of", "load_tree"]
+__all__ = ["IMPORTERS", "Importer", "importer_of", "load_tree", "taken_arguments"]
 
 _NOTHING: Mapping[str, str] = MappingProxyType({})
 
@@ -50,19 +50,37 @@ class _CarefulReader(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Importer:
-    """One format: its name, the lower-case suffixes of its files and the module with its `read`.
+    """One format by name: the lower-case suffixes of its files and the module with its `read`.
     `plug_in` is set for a format of another package, which its failures then name. `computes` says
-    that files of the format compute: its `read` takes `trust`."""
+    that files of the format compute: its `read` takes `trust`. `self_contained`: no file takes in others.
+    `arguments_target` "module:function" takes a file and the package paths and gives the arguments that
+    the file takes, each with the text of its default (None: it has none)."""
 
     kind: str
     suffixes: tuple[str, ...]
     module: str
     plug_in: PlugIn | None = None
     computes: bool = False
+    self_contained: bool = False
+    arguments_target: str | None = None
 
     def accepts(self, path: Path) -> bool:
         """Whether the file's name ends in one of the suffixes."""
         return path.name.lower().endswith(self.suffixes)
+
+    def taken_arguments(self, path: Path, package_paths: Sequence[Path]) -> dict[str, str | None]:
+        """The arguments that a file takes, with their defaults."""
+        if self.arguments_target is None:
+            return {}
+        module, function = self.arguments_target.split(":")
+        with self._blamed():
+            found: dict[str, str | None] = getattr(import_module(module), function)(
+                path, package_paths
+            )
+        return found
+
+    def _blamed(self) -> AbstractContextManager[None]:
+        return nullcontext() if self.plug_in is None else self.plug_in.blamed()
 
     def read(
         self,
@@ -73,10 +91,7 @@ class Importer:
         trust: bool = False,
     ) -> JointTree:
         """What the module's `read` gives; see `load_tree`."""
-        blamed: AbstractContextManager[None] = (
-            nullcontext() if self.plug_in is None else self.plug_in.blamed()
-        )
-        with blamed:
+        with self._blamed():
             module = import_module(self.module)
             if self.computes:
                 careful = cast(_CarefulReader, module)
@@ -88,8 +103,14 @@ class Importer:
 
 
 IMPORTERS: tuple[Importer, ...] = (
-    Importer("xacro", (".xacro",), "ikgen.importers.xacro.expansion", computes=True),
-    Importer("urdf", (".urdf", ".xml"), "ikgen.importers.urdf.urdf_tree"),
+    Importer(
+        "xacro",
+        (".xacro",),
+        "ikgen.importers.xacro.expansion",
+        computes=True,
+        arguments_target="ikgen.importers.xacro.declared_arguments:declared_arguments",
+    ),
+    Importer("urdf", (".urdf", ".xml"), "ikgen.importers.urdf.urdf_tree", self_contained=True),
 )
 
 
@@ -156,3 +177,17 @@ def load_tree(
     urls = {file: known.get(file) or robot.url_of(file) for file in tree.source.dependencies}
     source = replace(tree.source, package_urls=tuple(urls.items()))
     return replace(tree, source=source)
+
+
+def taken_arguments(path: str | Path, package_paths: Sequence[Path] = ()) -> dict[str, str | None]:
+    """Argument -> the text of its default (None: it has none), of a description as for `load_tree`; none
+    where it takes none, or where that cannot be told."""
+    try:
+        if not is_named(path):
+            return importer_of(Path(path)).taken_arguments(Path(path), package_paths)
+        robot = find_robot(path)
+        paths = (*package_paths, *robot.package_paths)
+        found = importer_of(robot.file).taken_arguments(robot.file, paths)
+    except IkgenError:
+        return {}
+    return {name: robot.arguments.get(name, default) for name, default in found.items()}

@@ -164,7 +164,7 @@ def _content(request: Request) -> str:
 
     if is_named(request.robot):
         return read_tree(request).source.sha256
-    if request.table or importer_of(request.robot).kind == "urdf":
+    if request.table or importer_of(request.robot).self_contained:
         return str(_digest(request.robot))
     return read_tree(request).source.sha256
 
