@@ -16,7 +16,7 @@ from ikgen.errors import UnknownNameError, UsageError
 from ikgen.model.dh import DHChain
 from ikgen.model.entry_names import ENTRY_NAMES
 from ikgen.records.request import Request
-from ikgen.tasks import AXES, TASKS, WHOLE_POSE, Task, find_task
+from ikgen.tasks import AXES, TASKS, WHOLE_POSE, Task, find_task, smaller_tasks
 from ikgen.tasks.fitting import (
     fits,
     fitting_tasks,
@@ -29,7 +29,7 @@ from ikgen.verify.runners.python_module import _task_name
 
 FIXTURES = Path(__file__).resolve().parents[2] / "urdf_fixtures"
 
-APPROACH = Task("approach", frozenset({"r31"}), 1, "elevation of the tool's x axis", axis="x")
+APPROACH = Task("approach", frozenset({"r31"}), 1, "elevation of the tool's {axis} axis", axis="x")
 """As another package has it."""
 
 # Yaw, two parallel joints and a roll about the tool's z axis: its direction does not see the roll.
@@ -90,6 +90,19 @@ def test_the_axis_chooses_the_column() -> None:
     assert along.along("z") == plain
     pitch = find_task("TranslationZAxisAngle4D", "y")
     assert pitch.readable == {"px", "py", "pz", "r32"} and pitch.orientation == "pitch"
+
+
+def test_a_task_says_its_axis_where_it_has_one() -> None:
+    with pytest.raises(ValueError, match=r"does not say \{axis\} in its words"):
+        replace(APPROACH, says="elevation of the tool's x axis")
+    with pytest.raises(ValueError, match="without an axis of the tool"):
+        replace(APPROACH, axis="")
+    assert APPROACH.along("z").words == "elevation of the tool's z axis"
+
+
+def test_what_is_offered_in_place_of_a_task_is_smaller() -> None:
+    names = [task.name for task in smaller_tasks(5)]
+    assert names == ["position-pitch", "position-yaw", "position", "direction"]
 
 
 def test_tasks_without_a_direction_have_no_axis() -> None:

@@ -86,10 +86,10 @@ def attempts(
     in which they are taken without options. An arm with fewer joints than a pose has freedoms is tried with
     the tasks that fit, the whole pose among them, and with smaller ones.
     """
-    from ikgen.tasks import find_task
+    from ikgen.tasks import POSE, find_task
 
     demand = Demand(asked, (), progress, axis=axis)
-    choices = held_choices(reading, find_task(asked or "pose"))
+    choices = held_choices(reading, find_task(asked or POSE.name))
     if choices:
         return _attempts_held(reading, choices, demand)
     progress("derive", asked or "the task that fits")
@@ -103,11 +103,11 @@ def attempts(
 
 def _other_tasks(reading: Reading, taken: str, demand: Demand) -> list[Attempt]:
     """What becomes of the other tasks that fit an arm, and of those with one freedom less."""
-    from ikgen.tasks import TASKS
+    from ikgen.tasks import smaller_tasks
     from ikgen.tasks.fitting import fitting_tasks
 
     moving = reading.dh.dof - len(reading.dh.free)
-    less = [t for t in TASKS if t.freedoms == moving - 1 and t.name != "rotation"]
+    less = [t for t in smaller_tasks(moving) if t.freedoms == moving - 1]
     found = []
     for task in [*fitting_tasks(reading.dh, demand.axis), *less]:
         if task.name != taken:

@@ -25,6 +25,7 @@ from ikgen.derivation.task_forms import (
 from ikgen.emit.derivation import Held, Reading
 from ikgen.errors import UsageError
 from ikgen.model.dh import ARM_ANGLE_OPTION
+from ikgen.tasks import POSE, POSITION, find_task
 
 if TYPE_CHECKING:
     from ikgen.model.dh import DHChain
@@ -56,11 +57,9 @@ _OTHERS = 3
 def closed_form(reading: Reading, demand: Demand) -> ClosedForm:
     """The chain's best closed form; joints that move the task in vain are held, chosen by
     `held_choices`."""
-    from ikgen.tasks import find_task
-
     if reading.dh.arm_angle:
         return _with_arm_angle(reading, demand)
-    choices = held_choices(reading, find_task(demand.task or "pose"))
+    choices = held_choices(reading, find_task(demand.task or POSE.name))
     choices = tuple(choice for choice in choices if choice.held not in demand.refused)
     if choices:
         return _with_joints_held(reading, choices, demand)
@@ -72,10 +71,9 @@ def _position_instead(reading: Reading, found: ClosedForm, demand: Demand) -> Cl
     """The position alone, with joints held, where nobody asked for a task and the arm can do none that
     takes all its joints: it can be anywhere, and take hardly any whole pose. None where that is no way
     out."""
-    from ikgen.tasks import find_task
     from ikgen.tasks.fitting import freedoms_moved, over_constrained
 
-    task, dh = find_task("position"), reading.dh
+    task, dh = POSITION, reading.dh
     free_to_choose = demand.task is None and demand.axis is None and not dh.free
     if (
         not free_to_choose
@@ -117,7 +115,7 @@ def _zeros(dh: DHChain) -> int:
 def _with_arm_angle(reading: Reading, demand: Demand) -> ClosedForm:
     """What the rules make of an arm whose arm angle is held. Raises UsageError for a task that is not the
     pose. The rows stay as they were read: the arm angle is theirs."""
-    if demand.task not in (None, "pose"):
+    if demand.task not in (None, POSE.name):
         raise UsageError(
             f"--free {ARM_ANGLE_OPTION}: the task '{demand.task}' does not fix the whole pose",
             hint="leave out --task, or --free",

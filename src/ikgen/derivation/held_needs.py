@@ -55,10 +55,10 @@ def check_task(request: Request, dh: DHChain) -> None:
 
 def check_tool_axis(request: Request, dh: DHChain) -> None:
     """Raises `UsageError` for an axis without a task where the arm moves all of a pose: no other fits."""
-    from ikgen.tasks import find_task
+    from ikgen.tasks import POSE
     from ikgen.tasks.fitting import freedoms_moved
 
-    pose, axis = find_task("pose"), request.tool_axis
+    pose, axis = POSE, request.tool_axis
     if axis is not None and request.task is None and freedoms_moved(dh, pose) == pose.freedoms:
         pose.along(axis)
 

@@ -12,6 +12,7 @@ from ikgen.derivation.lost_freedom import lost_freedom
 from ikgen.derivation.progress import Progress, silent
 from ikgen.derivation.read import has_arm_angle, read, read_tree
 from ikgen.errors import UnsolvedChainError
+from ikgen.tasks import POSE, find_task
 
 if TYPE_CHECKING:
     from ikgen.chains.arms import ChainCandidate
@@ -63,7 +64,7 @@ class Inspection:
     @property
     def arm_angle(self) -> bool:
         """Whether the arm angle can be held in a joint's place: only poses are solved so."""
-        held = self.closed and self.closed[0].held and self.closed[0].task == "pose"
+        held = self.closed and self.closed[0].held and self.closed[0].task == POSE.name
         return bool(held) and self.reading is not None and has_arm_angle(self.reading)
 
     @property
@@ -74,7 +75,6 @@ class Inspection:
     @property
     def warnings(self) -> tuple[str, ...]:
         """What was odd in the file, that joints are not independent, or that some hardly move."""
-        from ikgen.tasks import find_task
 
         if self.reading is not None:
             lost = lost_freedom(self.reading, self.reading.dh.free)

@@ -40,10 +40,10 @@ def lost_freedom(reading: Reading, held: Collection[str]) -> str:
 
 def _dependent(dh: DHChain) -> tuple[tuple[int, ...], int] | None:
     """The fewest joints that are not independent, and in how many ways they move the tip."""
-    from ikgen.tasks import find_task
+    from ikgen.tasks import POSE
     from ikgen.tasks.fitting import motion_ratios, rank, scaled_motion
 
-    motion = scaled_motion(dh, find_task("pose"))
+    motion = scaled_motion(dh, POSE)
     for count in range(2, dh.dof + 1):
         for joints in combinations(range(dh.dof), count):
             ways = rank(motion_ratios(motion[None, :, :, list(joints)])[0])

@@ -110,13 +110,12 @@ def _choices(unsolved: Unsolved) -> Iterator[tuple[Task, HeldChoice | None]]:
     joints held as move in vain (None: none)."""
     from ikgen.derivation.closed_forms import rule_tries
     from ikgen.derivation.held_joints import held_choices
-    from ikgen.tasks import TASKS
+    from ikgen.tasks import smaller_tasks
 
     reading, task = unsolved.reading, unsolved.task
-    smaller = [t for t in TASKS if t.freedoms < task.freedoms and t.name != "rotation"]
     for choice in held_choices(reading, task)[rule_tries(reading.dh) :]:
         yield task, choice
-    for one in smaller:
+    for one in smaller_tasks(task.freedoms):
         choices = held_choices(reading, one)
         if not choices:
             yield one, None

@@ -12,6 +12,7 @@ from ikgen.errors import BadDescriptionError, IkgenError, VerificationError
 from ikgen.generation.emitted_arm import EmittedArm
 from ikgen.projects.check_findings import Finding
 from ikgen.projects.forward_difference import forward_difference
+from ikgen.tasks import POSE
 from ikgen.verify.shared_work import SharedWork
 
 if TYPE_CHECKING:
@@ -105,7 +106,7 @@ class OutputChecks:
 
     def _arm(self) -> EmittedArm:
         dh, request = self.reading.dh, self.record.request
-        task, most = request.task or "pose", self.record.max_solutions
+        task, most = request.task or POSE.name, self.record.max_solutions
         return EmittedArm(self.record.name, dh, task, dh.free_indices, most)
 
     def _failed(self, name: str, error: IkgenError) -> Finding | None:

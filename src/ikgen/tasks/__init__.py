@@ -8,7 +8,17 @@ from ikgen.errors import UnknownNameError, UsageError
 from ikgen.model.entry_names import entry_name, entry_place
 from ikgen.plugins import find_plug_in, plug_ins
 
-__all__ = ["AXES", "TASKS", "WHOLE_POSE", "Task", "find_task", "task_names"]
+__all__ = [
+    "AXES",
+    "POSE",
+    "POSITION",
+    "TASKS",
+    "WHOLE_POSE",
+    "Task",
+    "find_task",
+    "smaller_tasks",
+    "task_names",
+]
 
 AXES = ("x", "y", "z")
 """The tool's axes, by which a task with a direction goes."""
@@ -19,6 +29,8 @@ _DIRECTION = ("r13", "r23", "r33")
 _ELEVATION = ("r33",)
 WHOLE_POSE = frozenset(_ROTATION + _POSITION)
 """Names of all entries of a pose."""
+
+_AXIS = "{axis}"
 
 _ORIENTATIONS = {
     frozenset(): "",
@@ -33,16 +45,31 @@ _ORIENTATIONS = {
 class Task:
     """A task reads the pose entries `readable` (rows and columns from 1) and fixes `freedoms` of the
     tip's six; `aliases` are IKFast's names, which MoveIt users know. `axis` is the tool's axis that a task
-    with a direction, an elevation or a heading reads ("": the task has none), `first` that of its name
-    alone where `axis` is another."""
+    with a direction, an elevation or a heading reads ("": it reads no single one); `first`: the axis that
+    the bare name means, set only where `axis` is another. `says` is what counts in words, with `{axis}`
+    where the axis is named."""
 
     name: str
     readable: frozenset[str]
     freedoms: int
-    words: str
+    says: str
     aliases: tuple[str, ...] = ()
     axis: str = ""
     first: str = ""
+
+    def __post_init__(self) -> None:
+        if bool(self.axis) != (_AXIS in self.says):
+            found = (
+                "says {axis} without"
+                if _AXIS in self.says
+                else "does not say {axis} in its words for"
+            )
+            raise ValueError(f"the task '{self.name}' {found} an axis of the tool")
+
+    @property
+    def words(self) -> str:
+        """What counts, in words."""
+        return self.says.replace(_AXIS, self.axis)
 
     @property
     def stem(self) -> str:
@@ -63,10 +90,9 @@ class Task:
         readable = frozenset(
             n[:-1] + new if n[0] == "r" and n[-1] == old else n for n in self.readable
         )
-        words = self.words.replace(f"tool's {self.axis} axis", f"tool's {axis} axis")
         first = self.first or self.axis
         name, first = (self.stem, "") if axis == first else (f"{self.stem}:{axis}", first)
-        return replace(self, name=name, readable=readable, words=words, axis=axis, first=first)
+        return replace(self, name=name, readable=readable, axis=axis, first=first)
 
     @property
     def whole_pose(self) -> bool:
@@ -91,13 +117,17 @@ class Task:
         return _ORIENTATIONS.get(rest, "entries")
 
 
+POSE = Task("pose", WHOLE_POSE, 6, "position and rotation", ("Transform6D",))
+POSITION = Task("position", frozenset(_POSITION), 3, "position", ("Translation3D",))
+ROTATION = Task("rotation", frozenset(_ROTATION), 3, "rotation", ("Rotation3D",))
+
 TASKS: tuple[Task, ...] = (
-    Task("pose", WHOLE_POSE, 6, "position and rotation", ("Transform6D",)),
+    POSE,
     Task(
         "position-direction",
         frozenset(_POSITION + _DIRECTION),
         5,
-        "position and direction of the tool's z axis",
+        "position and direction of the tool's {axis} axis",
         ("TranslationDirection5D",),
         "z",
     ),
@@ -105,7 +135,7 @@ TASKS: tuple[Task, ...] = (
         "position-pitch",
         frozenset(_POSITION + _ELEVATION),
         4,
-        "position and elevation of the tool's z axis over the base's x-y plane",
+        "position and elevation of the tool's {axis} axis over the base's x-y plane",
         ("TranslationZAxisAngle4D",),
         "z",
     ),
@@ -113,21 +143,27 @@ TASKS: tuple[Task, ...] = (
         "position-yaw",
         frozenset((*_POSITION, "r11", "r21")),
         4,
-        "position and heading of the tool's x axis about the base's z",
+        "position and heading of the tool's {axis} axis about the base's z",
         ("TranslationXAxisAngleZNorm4D", "TranslationXAxisAngle4D"),
         "x",
     ),
-    Task("position", frozenset(_POSITION), 3, "position", ("Translation3D",)),
-    Task("rotation", frozenset(_ROTATION), 3, "rotation", ("Rotation3D",)),
+    POSITION,
+    ROTATION,
     Task(
         "direction",
         frozenset(_DIRECTION),
         2,
-        "direction of the tool's z axis",
+        "direction of the tool's {axis} axis",
         ("Direction3D",),
         "z",
     ),
 )
+
+
+def smaller_tasks(freedoms: int) -> list[Task]:
+    """Tasks that fix fewer freedoms, to offer in place of one that fixes so many: the rotation alone is
+    asked for, never offered."""
+    return [task for task in TASKS if task.freedoms < freedoms and task is not ROTATION]
 
 
 def _with_axis() -> list[str]:

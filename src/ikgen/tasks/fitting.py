@@ -11,7 +11,7 @@ import numpy as np
 from ikgen.kinematics.axis_relations import reach
 from ikgen.kinematics.forward import file_forward, file_slopes
 from ikgen.program.policy import LEVEL
-from ikgen.tasks import AXES, TASKS, Task
+from ikgen.tasks import AXES, POSE, TASKS, Task
 
 if TYPE_CHECKING:
     from ikgen.model.dh import DHChain
@@ -55,14 +55,13 @@ def fitting_tasks(dh: DHChain, axis: str | None = None) -> tuple[Task, ...]:
     its joints do move all of them; the whole pose then only counts on the poses that it can take.
     """
     moving = dh.dof - len(dh.free)
-    whole = TASKS[0]
-    if moving >= whole.freedoms:
-        return (whole,)
+    if moving >= POSE.freedoms:
+        return (POSE,)
     sized = [task for task in TASKS if task.freedoms == moving]
     found = [way for task in sized for way in _along(dh, task, (axis,) if axis else AXES)]
     rated = {way: _condition(dh, way) for way in found}
     least = _BARELY * max(rated.values(), default=0.0)
-    return (*sorted(found, key=lambda way: rated[way] < least), whole)
+    return (*sorted(found, key=lambda way: rated[way] < least), POSE)
 
 
 def _along(dh: DHChain, task: Task, axes: Sequence[str]) -> list[Task]:

@@ -9,6 +9,8 @@ from typing import NamedTuple, Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
+from ikgen.tasks import POSE
+
 __all__ = ["ArmConstants", "MovingRunner", "Rows", "Runner", "Stack", "StackRunner", "solve_stacks"]
 
 Array = NDArray[np.float64]
@@ -26,7 +28,7 @@ class ArmConstants:
     base_link: str
     tip_link: str
     max_solutions: int
-    task: str = "pose"
+    task: str = POSE.name
     free_joints: tuple[str, ...] = ()
     free_defaults: tuple[float, ...] | None = None
 
