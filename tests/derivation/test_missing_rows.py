@@ -11,10 +11,11 @@ from tests.support.solving import FIXTURES
 
 import ikgen
 from ikgen.derivation.derive import derive
-from ikgen.derivation.unsolved import incomplete_error
+from ikgen.derivation.unsolved import _OF_MISSING_ROWS, incomplete_error
 from ikgen.emit.derivation import Derivation
 from ikgen.errors import IkgenError, UnsolvedChainError, VerificationError
-from ikgen.records.request import Request
+from ikgen.generation.generate import generate
+from ikgen.records.request import Outputs, Request
 from ikgen.verify.verification_report import CheckResult, VerificationReport
 
 REQUEST = Request(FIXTURES / "puma560_paper.toml")
@@ -55,6 +56,20 @@ def test_wrong_rows_and_misses_that_nothing_told_of_are_failures(derivation: Der
     ):
         found = said(made, *failed)
         assert isinstance(found, VerificationError) and found.exit_code == 1
+
+
+def test_each_check_is_of_missing_rows_or_of_wrong_code(
+    derivation: Derivation, tmp_path: Path
+) -> None:
+    made = generate(REQUEST, Outputs(out=tmp_path, emit=("python", "cpp"), samples=20))
+    names = {check.name for report in made.reports.values() for check in report.checks}
+    names |= {"runs", "self motion"}
+    told = {name for name in names if isinstance(said(weak(derivation), name), UnsolvedChainError)}
+    told = {name.partition(" with ")[0] for name in told}
+    assert told == _OF_MISSING_ROWS
+    assert {"closure", "runs", "bad shapes", "invalid poses", "determinism", "seed order"} <= names
+    found = said(weak(derivation), "completeness", "bad shapes")
+    assert isinstance(found, VerificationError)
 
 
 def test_an_elimination_that_misses_some_is_named(derivation: Derivation) -> None:

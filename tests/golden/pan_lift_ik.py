@@ -91,7 +91,7 @@ def forward(q: ArrayLike) -> Array:
 
 
 def jacobian(q: ArrayLike) -> Array:
-    """Geometric Jacobian of the tip in BASE_LINK: (6, DOF); linear rows, then angular."""
+    """Geometric Jacobian of the tip in BASE_LINK: q (..., DOF) -> (..., 6, DOF); linear rows (m), then angular (rad)."""
     return _jacobian(_CHAIN, q)
 
 

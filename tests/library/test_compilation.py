@@ -76,6 +76,15 @@ def test_a_compiled_arm_does_what_the_arm_does(cache: Path) -> None:
     assert len(fast.solve(rough, orthonormalize=True)) == len(arm.solve(rough, orthonormalize=True))
     assert (fast.solve_batch(poses[:, :3])[1] == arm.solve_batch(poses)[1]).all()
     assert fast.solve(poses[0] + 9.0).status == arm.solve(poses[0] + 9.0).status
+    mine, theirs = (one.search(poses[0], prefer="dexterous") for one in (fast, arm))
+    assert np.allclose(mine.q, theirs.q, atol=1e-9) and mine.status is theirs.status
+    along = arm.forward(np.linspace(q[0], q[0] + 0.3, 5))
+    path, other = (one.follow(along, start=q[0]) for one in (fast, arm))
+    assert np.allclose(path.q, other.q, atol=1e-9) and path.reached == other.reached == 5
+    assert type(path) is type(other) and path.status is other.status
+    assert fast._functions is fast.compiled  # those that this arm has not, too
+    with pytest.raises(ikgen.UsageError, match="no self_motion"):
+        fast.self_motion(poses[0])
     for wrong in (np.eye(3), "here"):
         with pytest.raises(ArgumentError):
             fast.solve(wrong)

@@ -21,8 +21,19 @@ if TYPE_CHECKING:
 
 __all__ = ["incomplete_error", "unsolved_error"]
 
-_OF_WRONG_ROWS = {"closure", "distinct rows", "inside limits", "constants", "forward", "jacobian"}
-"""Checks that no form that misses rows fails for it."""
+_OF_MISSING_ROWS = {
+    "completeness",
+    "poses answered",
+    "exhaustive search",
+    "status",
+    "choice by limits",
+    "singular poses",
+    "paths",
+    "search",
+    "self motion",
+    "agreement",
+}
+"""Checks that a form which misses rows may fail for it; what fails another one is wrong code."""
 
 
 def unsolved_error(found: Unsolved, request: Request) -> UnsolvedChainError:
@@ -52,7 +63,8 @@ def incomplete_error(error: VerificationError, request: Request) -> IkgenError:
     failure as it is."""
     derivation: Derivation | None = error.derivation
     failed = {check.name for report in error.reports.values() for check in report.failed}
-    if derivation is None or not failed or failed & _OF_WRONG_ROWS:
+    kinds = {name.partition(" with ")[0] for name in failed}  # agreement, with which language
+    if derivation is None or not failed or not kinds <= _OF_MISSING_ROWS:
         return error
     causes = _known_gaps(derivation)
     if not causes:

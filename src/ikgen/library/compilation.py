@@ -8,24 +8,24 @@ import os
 import platform
 import sys
 import sysconfig
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from ikgen.errors import MissingToolError, VerificationError
 from ikgen.kinematics.joint_box import joint_box
 from ikgen.library.load_arguments import wrong
-from ikgen.library.loaded_arm import Arm, Array
+from ikgen.library.loaded_arm import Arm
 from ikgen.library.solver_cache import cache_folder
 from ikgen.processes.scratch_folder import ScratchFolder
 
 if TYPE_CHECKING:
     from ikgen.runtime.python.rows.solutions import Solutions
+    from ikgen.runtime.python.solving.path_following import Path as JointPath
 
 __all__ = ["CompiledArm", "compile"]
 
@@ -34,60 +34,30 @@ _SAME = 1e-9  # rad, m: rows of the compiled solver and of the Python module
 
 
 class CompiledArm(Arm):
-    """An `Arm` whose `solve`, `solve_batch`, `forward` and `jacobian` run compiled: `compiled` is the
-    module of the nanobind package. What they take and give is what those of `Arm` do; other functions are
-    the Python module's."""
+    """An `Arm` whose functions run compiled: `compiled` is the module of the nanobind package. What they
+    take and give is what those of `Arm` do."""
 
     def __init__(self, arm: Arm, compiled: ModuleType) -> None:
         super().__init__(arm._request, arm._outputs, arm._entry, arm._derived)
         self.compiled = compiled
 
-    def solve(
-        self,
-        pose: Any,
-        *,
-        free: Sequence[float] | Mapping[str, float] | None = None,
-        seed: ArrayLike | None = None,
-        limits: bool = True,
-        project: bool = False,
-        orthonormalize: bool = False,
-    ) -> Solutions:
-        """As `Arm.solve`, by the compiled solver."""
-        options: dict[str, Any] = {"free": free, "seed": seed, "limits": limits}
-        options |= {"project": project, "orthonormalize": orthonormalize}
-        found = self._refusing(self.compiled.solve, "solve", pose, **options)
-        module = self.module
-        told = found.reason, found.names, found.projected
-        rows: Solutions = module.Solutions(
-            found.q, module.Status[found.status.name], found.singular, *told
-        )
+    @property
+    def _functions(self) -> ModuleType:
+        return self.compiled
+
+    def _solutions(self, found: Any) -> Solutions:
+        told = found.singular, found.reason, found.names, found.projected
+        rows: Solutions = self.module.Solutions(found.q, self._status(found), *told)
         return rows
 
-    def solve_batch(
-        self,
-        poses: Any,
-        *,
-        free: ArrayLike | Mapping[str, float] | None = None,
-        seed: ArrayLike | None = None,
-        limits: bool = True,
-        orthonormalize: bool = False,
-    ) -> tuple[Array, NDArray[np.int64], NDArray[np.str_]]:
-        """As `Arm.solve_batch`, by the compiled solver."""
-        options = {"free": free, "seed": seed, "limits": limits, "orthonormalize": orthonormalize}
-        found: tuple[Array, NDArray[np.int64], NDArray[np.str_]] = self._refusing(
-            self.compiled.solve_batch, "solve_batch", poses, **options
+    def _path(self, found: Any) -> JointPath:
+        path: JointPath = self.module.Path(
+            found.q, found.reached, self._status(found), found.singular
         )
-        return found
+        return path
 
-    def forward(self, q: ArrayLike) -> Array:
-        """As `Arm.forward`, by the compiled solver."""
-        T: Array = self._refusing(self.compiled.forward, "forward", q)
-        return T
-
-    def jacobian(self, q: ArrayLike) -> Array:
-        """As `Arm.jacobian`, by the compiled solver."""
-        J: Array = self._refusing(self.compiled.jacobian, "jacobian", q)
-        return J
+    def _status(self, found: Any) -> Any:
+        return self.module.Status[found.status.name]
 
 
 def compile(arm: Arm) -> CompiledArm:

@@ -55,7 +55,7 @@ def load(
 
     Raises errors of `ikgen.errors` alone: `ArgumentError` for a wrong argument, `BadDescriptionError` for
     a file that cannot be read, `UnsolvedChainError` where there is no closed form, `VerificationError`
-    where a check fails.
+    where a check fails, `PlugInError` where another package's part does.
     """
     request = checked_request(
         robot, base=base, tip=tip, task=task, tool_axis=tool_axis, free=free, lock=lock,

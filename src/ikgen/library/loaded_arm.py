@@ -21,7 +21,9 @@ if TYPE_CHECKING:
     from ikgen.library.arm_derivation import ArmDerivation
     from ikgen.library.solver_cache import SolverEntry
     from ikgen.records.request import Outputs, Request
+    from ikgen.runtime.python.held.self_motion import Interval
     from ikgen.runtime.python.rows.solutions import Solutions
+    from ikgen.runtime.python.solving.path_following import Path as JointPath
     from ikgen.verify.verification_report import VerificationReport
 
 __all__ = ["Arm"]
@@ -154,8 +156,8 @@ class Arm:
         back, and its `reason` says what is wrong with it.
         """
         options = {"free": free, "seed": seed, "limits": limits, "project": project}
-        found: Solutions = self._call("solve", pose, **options, orthonormalize=orthonormalize)
-        return found
+        found = self._call("solve", pose, **options, orthonormalize=orthonormalize)
+        return self._solutions(found)
 
     def solve_batch(
         self,
@@ -172,9 +174,15 @@ class Arm:
         )
         return found
 
-    def self_motion(self, pose: Any, *, limits: bool = True) -> tuple[Any, ...]:
-        """Intervals of the held joint's values on which the pose has a row, one a branch."""
-        found: tuple[Any, ...] = self._call("self_motion", pose, limits=limits)
+    def arm_angle(self, q: ArrayLike) -> Array:
+        """The arm angle (rad) of joint values (..., dof): (...). Of arms that hold it."""
+        angles: Array = self._call("arm_angle", q)
+        return angles
+
+    def self_motion(self, pose: Any, *, limits: bool = True) -> tuple[Interval, ...]:
+        """Intervals `low` to `high` of the held joint's value (rad or m) on which the pose has a row of the
+        `branch`, inside the limits if these count; ends to 1e-9. Of arms with one held joint."""
+        found: tuple[Interval, ...] = self._call("self_motion", pose, limits=limits)
         return found
 
     def search(
@@ -185,30 +193,41 @@ class Arm:
         prefer: str = "near",
         limits: bool = True,
     ) -> Solutions:
-        """Rows over all values of the held joints, best first: near to the seed, in the centre of the
-        limits, or dexterous."""
+        """Rows over all values of the held joints, best first, of each branch the best: by `prefer` the
+        "near" ones to the seed (dof,), those in the "centre" of the limits, or the most "dexterous", of
+        which the smallest singular value of the task's Jacobian (m/s, rad/s) is largest."""
         if not isinstance(prefer, str):
             raise wrong("prefer", prefer, '"near", "centre" or "dexterous"')
-        found: Solutions = self._call("search", pose, seed=seed, prefer=prefer, limits=limits)
-        return found
+        return self._solutions(self._call("search", pose, seed=seed, prefer=prefer, limits=limits))
 
-    def follow(self, poses: Any, *, start: ArrayLike, limits: bool = True) -> Any:
-        """The path of one branch through poses, from `start` on."""
-        return self._call("follow", poses, start=start, limits=limits)
+    def follow(self, poses: Any, *, start: ArrayLike, limits: bool = True) -> JointPath:
+        """Joint values along poses (N, 4, 4) on one branch, of the first those next to `start` (dof,), rad
+        or m: `q` (N, dof), NaN from the first pose on that was not reached; `reached`, how many were;
+        `status`, OK or why the next was not; `singular` (N,)."""
+        return self._path(self._call("follow", poses, start=start, limits=limits))
+
+    @property
+    def _functions(self) -> ModuleType:
+        """What has the functions."""
+        return self.module
+
+    def _solutions(self, found: Any) -> Solutions:
+        """Of the module's class."""
+        rows: Solutions = found
+        return rows
+
+    def _path(self, found: Any) -> JointPath:
+        """Of the module's class."""
+        path: JointPath = found
+        return path
 
     def _call(self, function: str, *arguments: Any, **options: Any) -> Any:
-        """What a function of the module gives; what it refuses, ikgen's own error refuses."""
-        called: Callable[..., Any] | None = getattr(self.module, function, None)
+        """What a function of the solver gives; what it refuses, ikgen's own error refuses."""
+        called: Callable[..., Any] | None = getattr(self._functions, function, None)
         if called is None:
             raise UsageError(
                 f"the solver of {self.name} has no {function}", hint=self._without(function)
             )
-        return self._refusing(called, function, *arguments, **options)
-
-    def _refusing(
-        self, called: Callable[..., Any], function: str, *arguments: Any, **options: Any
-    ) -> Any:
-        """What it gives; a value that it refuses is an `ArgumentError`."""
         for flag in _FLAGS & options.keys():
             checked_flag(flag, options[flag])
         try:
@@ -218,6 +237,8 @@ class Arm:
             raise ArgumentError(f"{function}: {text}", hint=self._expected(text)) from error
 
     def _without(self, function: str) -> str:
+        if function == "arm_angle":
+            return 'arm_angle is of arms that hold it: load with free="arm-angle"'
         if not self.free_joints:
             return f"{function} is of arms with held joints: this one has none (see free=)"
         return f"modules of this version of ikgen have no {function}"

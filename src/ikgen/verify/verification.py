@@ -50,7 +50,7 @@ def _plan(
     rng = generator(seed, "search")
     agreement: dict[str, Callable[[], CheckResult]] = {}
     if peer is not None:
-        agreement["agreement"] = lambda: check_agreement(arm, a.unlimited, peer)
+        agreement[f"agreement with {peer.label}"] = lambda: check_agreement(arm, a.unlimited, peer)
     return {
         "constants": lambda: interface_checks.check_constants(arm, runner, a.unlimited.rows),
         "forward": lambda: interface_checks.check_forward(runner, random),

@@ -38,6 +38,7 @@ static double number(ik::Status status) {
     case ik::Status::Unreachable: return 1;
     case ik::Status::Limits: return 2;
     case ik::Status::Invalid: return 3;
+    case ik::Status::Singular: return 4;
   }
   return -1;
 }

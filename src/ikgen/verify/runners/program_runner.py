@@ -14,8 +14,9 @@ of five (mode, N, has free values, has seeds, limits), then N items. The answers
 | 6 search | pose, seed | as for solve |
 | 7 self_motion | pose | count, then the ends of as many intervals |
 
-Status: 0 OK, 1 UNREACHABLE, 2 LIMITS, 3 INVALID. There are as many rows as solutions at most, each the
-joints and whether it is singular, and of a path one for each pose; those beyond the count are zeros.
+Status: 0 OK, 1 UNREACHABLE, 2 LIMITS, 3 INVALID, and of a path alone 4 SINGULAR. There are as many rows as
+solutions at most, each the joints and whether it is singular, and of a path one for each pose; those beyond
+the count are zeros.
 
 Constants are the defaults of the free joints; then, if it likes, the lower limits and the upper ones of all
 joints, and as texts the base link, the tip link and the names of the joints. A text is its length in bytes
@@ -52,7 +53,7 @@ INFO, SOLVE, FORWARD, JACOBIAN, BATCH, FOLLOW, SEARCH, SELF_MOTION = range(8)
 
 Array = NDArray[np.float64]
 
-_STATUS = ("OK", "UNREACHABLE", "LIMITS", "INVALID")
+_STATUS = ("OK", "UNREACHABLE", "LIMITS", "INVALID", "SINGULAR")
 
 
 class ProgramRunner:
@@ -201,7 +202,7 @@ class ProgramRunner:
 
 
 def _name(status: float) -> str:
-    return _STATUS[int(status)] if status >= 0 else "UNKNOWN"
+    return _STATUS[int(status)] if 0 <= status < len(_STATUS) else "UNKNOWN"
 
 
 def _told(constants: ArmConstants, told: Array) -> ArmConstants:
