@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from tests.support.made_programs import made_module, with_limits
 
+from ikgen.elimination.parallel_plans import ParallelKind
 from ikgen.emit import moveit
 from ikgen.emit.blanks import pairs
 from ikgen.emit.cpp.cpp_emitter import (
@@ -72,7 +73,9 @@ def test_braced_lists_hold_the_chain() -> None:
         assert (c, s) == pytest.approx((math.cos(link.twist), math.sin(link.twist)), abs=1e-15)
 
 
-def planned(*, bounded: bool | None, kind: int = 1, turning: bool = True) -> SimpleNamespace:
+def planned(
+    *, bounded: bool | None, kind: ParallelKind = ParallelKind.UPRIGHT, turning: bool = True
+) -> SimpleNamespace:
     """A plan with an elimination about parallel axes, whose polynomial is `bounded` or not, or without."""
     parallel = None if bounded is None else SimpleNamespace(loop=(0, 0), kind=kind, bounded=bounded)
     return SimpleNamespace(parallel=parallel, turning=(True, turning), tool=None)
@@ -84,7 +87,7 @@ def test_the_elimination_about_parallel_axes_comes_with_its_header(bounded: bool
     call = replace(module.program.levels[2].call, routine="general_6r")
     level = replace(module.program.levels[2], call=call)
     program = replace(module.program, levels=(*module.program.levels[:2], level))
-    for kind, name in enumerate(("kPlain", "kUpright", "kMeeting")):
+    for kind, name in zip(ParallelKind, ("kPlain", "kUpright", "kMeeting"), strict=True):
         planned_one = replace(module, program=program, plan=planned(bounded=bounded, kind=kind))
         found = _headers(planned_one)
         assert ("elimination/parallel_6r.hpp" in found) == bool(bounded)

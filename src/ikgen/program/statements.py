@@ -58,7 +58,12 @@ class Call:
     | `trig_quartic` | a2, b2, a1, b1, a0 | c, s: cosine and sine of a root |
     | `trig_quartic_wide` | these, and the largest imaginary part (rad) of roots that count | the same |
     | `trig_polynomial` | see `TrigPolynomial.lower` | the same |
-    | those of `elimination/elimination_table.py` | pose, held joints | six joints |
+    | `general_6r` | pose, held joints | six revolute joints |
+    | `one_slide` | pose, held joints | five revolute joints and a slide |
+    | `one_slide_both` | pose, held joints | the same where half angles of one angle leave no rank |
+    | `two_slides` | pose, held joints | four revolute joints and two slides |
+    | `three_slides` | pose, held joints | three revolute joints and three slides |
+    | `coupled_6r` | pose, held joints | six revolute joints, of which one moves several axes |
 
     Roots are those of a2 cos 2u + b2 sin 2u + a1 cos u + b1 sin u + a0. Pose: the entries r11, r12, r13,
     px, r21, ... of its upper three rows. Joints, base to tip: cosine and sine of the DH variable of each
