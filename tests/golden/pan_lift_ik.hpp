@@ -3138,6 +3138,48 @@ template <class A, int N> struct LeastSingularValue {
   }
 };
 
+// --- row preference ------------------------------------------------------------------------------
+template <class A> struct RowPreference {
+  using Prefer = typename A::Prefer;
+  typename A::Joints wanted;
+  double weight[A::kDof];
+  typename A::Options options;
+  Prefer prefer;
+
+  RowPreference(const typename A::Joints* seed, Prefer kind, bool limits) noexcept : prefer(kind) {
+    for (int j = 0; j < A::kDof; ++j) {
+      const double low = A::kLower.data()[j], high = A::kUpper.data()[j];
+      const bool bounded = high - low < kInfinity, nearby = kind == Prefer::Near && seed;
+      const double half = std::max(0.5 * (high - low), 1e-6);
+      wanted.data()[j] = bounded && !nearby ? 0.5 * (low + high) : seed ? seed->data()[j] : 0.0;
+      weight[j] = nearby ? 1.0 : bounded ? 1.0 / (half * half) : 0.0;
+    }
+    options.limits = limits;
+    options.seed = &wanted;
+  }
+  RowPreference(const RowPreference&) = delete;
+
+  bool place(double* q) const noexcept {
+    for (int j = 0; j < A::kDof; ++j)
+      if (A::kHeld[j] && A::kPeriod[j] > 0.0 && !(A::kUpper.data()[j] - A::kLower.data()[j] < kInfinity))
+        q[j] += A::kPeriod[j] * std::nearbyint((wanted.data()[j] - q[j]) / A::kPeriod[j]);
+    return SolutionRows<A>::place(q, options);
+  }
+
+  double cost(const double* q) const noexcept {
+    if (prefer == Prefer::Dexterous) return -smallest_singular_value(q);
+    double sum = 0.0;
+    for (int j = 0; j < A::kDof; ++j) sum += weight[j] * (q[j] - wanted.data()[j]) * (q[j] - wanted.data()[j]);
+    return sum;
+  }
+
+  static double smallest_singular_value(const double* q) noexcept {
+    Lanes<1> at[A::kDof];
+    for (int j = 0; j < A::kDof; ++j) at[j] = {q[j]};
+    return LeastSingularValue<A, 1>::of(at).v;
+  }
+};
+
 // --- path following ------------------------------------------------------------------------------
 template <class A, class Solver> struct PathStep {
   static constexpr int kDof = A::kDof, kDeepest = 24, kShallow = 9;
@@ -3318,48 +3360,7 @@ inline Walk follow_poses(const Eigen::Isometry3d* poses, std::ptrdiff_t count, c
   return out;
 }
 
-// --- row preference ------------------------------------------------------------------------------
-template <class A> struct RowPreference {
-  using Prefer = typename A::Prefer;
-  typename A::Joints wanted;
-  double weight[A::kDof];
-  typename A::Options options;
-  Prefer prefer;
-
-  RowPreference(const typename A::Joints* seed, Prefer kind, bool limits) noexcept : prefer(kind) {
-    for (int j = 0; j < A::kDof; ++j) {
-      const double low = A::kLower.data()[j], high = A::kUpper.data()[j];
-      const bool bounded = high - low < kInfinity, nearby = kind == Prefer::Near && seed;
-      const double half = std::max(0.5 * (high - low), 1e-6);
-      wanted.data()[j] = bounded && !nearby ? 0.5 * (low + high) : seed ? seed->data()[j] : 0.0;
-      weight[j] = nearby ? 1.0 : bounded ? 1.0 / (half * half) : 0.0;
-    }
-    options.limits = limits;
-    options.seed = &wanted;
-  }
-  RowPreference(const RowPreference&) = delete;
-
-  bool place(double* q) const noexcept {
-    for (int j = 0; j < A::kDof; ++j)
-      if (A::kHeld[j] && A::kPeriod[j] > 0.0 && !(A::kUpper.data()[j] - A::kLower.data()[j] < kInfinity))
-        q[j] += A::kPeriod[j] * std::nearbyint((wanted.data()[j] - q[j]) / A::kPeriod[j]);
-    return SolutionRows<A>::place(q, options);
-  }
-
-  double cost(const double* q) const noexcept {
-    if (prefer == Prefer::Dexterous) return -smallest_singular_value(q);
-    double sum = 0.0;
-    for (int j = 0; j < A::kDof; ++j) sum += weight[j] * (q[j] - wanted.data()[j]) * (q[j] - wanted.data()[j]);
-    return sum;
-  }
-
-  static double smallest_singular_value(const double* q) noexcept {
-    Lanes<1> at[A::kDof];
-    for (int j = 0; j < A::kDof; ++j) at[j] = {q[j]};
-    return LeastSingularValue<A, 1>::of(at).v;
-  }
-};
-
+// --- ordered solving -----------------------------------------------------------------------------
 template <class A, class Solver>
 inline void order_rows(const Eigen::Isometry3d& pose, const typename A::Joints* seed, typename A::Prefer prefer, bool limits,
                        typename A::Solutions& out) noexcept {

@@ -22,7 +22,7 @@ ALSO = {
     "elimination/general_6r": ("elimination/general_6r_runs",),
     "held/branch_arcs": ("held/branch_arc",),
     "held/held_grid_search": ("held/lone_value",),
-    "held/solution_search": ("held/row_preference", "held/values_descent"),
+    "held/solution_search": ("held/seeds_row", "held/values_descent"),
     "roots/quartic_lines": ("roots/trig_quartic",),
     "roots/trig_polynomial_numbers": ("roots/trig_polynomial",),
     "roots/trig_quartic_roots": ("roots/trig_quartic",),

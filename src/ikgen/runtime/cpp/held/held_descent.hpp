@@ -4,7 +4,7 @@
 #include "held/branch_curve.hpp"
 #include "held/held_sweep.hpp"
 #include "held/parabolic_descent.hpp"
-#include "held/row_preference.hpp"
+#include "rows/row_preference.hpp"
 
 namespace ikgen_runtime {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "held/held_sample.hpp"
-#include "held/row_preference.hpp"
+#include "held/seeds_row.hpp"
 #include "solving/nearest_row.hpp"
 
 namespace ikgen_runtime {

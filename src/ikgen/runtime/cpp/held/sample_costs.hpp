@@ -1,7 +1,7 @@
 #pragma once
 
 #include "held/held_sample.hpp"
-#include "held/row_preference.hpp"
+#include "rows/row_preference.hpp"
 
 namespace ikgen_runtime {
 

@@ -4,8 +4,8 @@
 // held, and folds, run aslant of the values.
 #pragma once
 
-#include "held/row_preference.hpp"
 #include "rows/row_pair.hpp"
+#include "rows/row_preference.hpp"
 
 namespace ikgen_runtime {
 
