@@ -87,7 +87,7 @@ def arm_of(derivation: Derivation) -> ArmUnderTest:
     dh, module = derivation.reading.dh, derivation.module
     limits = [(j.limits.lower, j.limits.upper) for j in dh.joints]
     lower, upper = (np.array(x) for x in zip(*limits, strict=True))
-    held = tuple(dh.joints[j].name for j in module.free)
+    held = tuple(dh.joints[j].name for j in module.free_indices)
     oracle = oracle_for(derivation.reading)
     return arm_under_test(oracle, task_space(find_task(module.task)), (lower, upper), held)
 

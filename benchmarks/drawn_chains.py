@@ -93,7 +93,7 @@ def _processor_time() -> float:
 
 def _derived(dh: DHChain, folder: Path) -> tuple[str, Path | None]:
     """How the chain was solved, and the emitted module's file."""
-    facts = ("pose", (), (), "table", "0" * 64, "benchmark")
+    facts = ("pose", (), "table", "0" * 64, "benchmark")
     graph, path = solve_chain(dh), folder / f"random_{next(_count)}.py"
     if not graph.open_joints:
         path.write_text(emit_module(SolverModule("random", lower(graph), dh, *facts)))

@@ -79,7 +79,7 @@ def compiled(name: str, folder: Path) -> Arm:
         base_link=dh.base_link,
         tip_link=dh.tip_link,
         task=module.task,
-        free_joints=tuple(dh.joints[j].name for j in module.free),
+        free_joints=tuple(dh.joints[j].name for j in module.free_indices),
         max_solutions=module.max_solutions,
     )
     header = CppHeader(folder / f"{module.name}_ik.hpp", constants)
@@ -233,9 +233,9 @@ def test_a_seed_turns_and_orders_the_rows_that_are_there_without(name: str, fold
     plain = arm.header.solve_many(arm.poses, limits=False)
     random = np.random.default_rng(5)
     seeds = random.uniform(-30.0, 30.0, arm.q.shape)
-    seeds[:, list(arm.module.free)] = [arm.module.free_defaults] * len(seeds)
+    seeds[:, list(arm.module.free_indices)] = [arm.module.free_defaults] * len(seeds)
     found = arm.header.solve_many(arm.poses, seeds=seeds, limits=False)
-    held = arm.module.free
+    held = arm.module.free_indices
     period = [0.0 if j in held else arm.module.period(j) for j in range(arm.module.dh.dof)]
     for i, seed in enumerate(seeds):
         if plain.singular[i].any() or found.singular[i].any():

@@ -91,7 +91,7 @@ def test_limits_of_the_robot_model_narrow_those_of_the_description(
 def test_discretized_values_of_a_held_joint(arm: Arm, plugin: Plugin) -> None:
     assert plugin.initialize(arm.base, arm.tip, resolution=0.25).good
     q = np.array([0.1, 0.2, -0.3, -2.0, 0.2, 1.8, 0.4])
-    free = arm.module.free[0]
+    free = arm.module.free_indices[0]
     answer, rows = plugin.get_all([arm.pose(q)], q, driver.ALL_DISCRETIZED)
     steps = (rows[:, free] - q[free]) / 0.25
     assert answer.good and 0.0 < answer.values[0] <= 1.0

@@ -134,7 +134,7 @@ def test_bad_input_is_refused(arm: Arm, plugin: Plugin) -> None:
     assert plugin.get_all([], q)[0].code == 5
     assert plugin.get_all([pose, pose], q)[0].code == 4
     assert plugin.get_all([pose], q, driver.ALL_RANDOM_SAMPLED)[0].code == 2
-    if not arm.module.free:
+    if not arm.module.free_indices:
         assert plugin.get_all([pose], q, driver.ALL_DISCRETIZED)[0].code == 2
     for numbers in ([np.nan, 0, 0, 0, 0, 0, 1], [0, 0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0, 2]):
         answer = plugin.call("get", *numbers, len(q), *q)

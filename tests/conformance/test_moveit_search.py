@@ -18,7 +18,10 @@ def test_every_search_starts_with_the_nearest(arm: Arm, plugin: Plugin) -> None:
     assert plugin.initialize(arm.base, arm.tip).good
     wide = np.full(len(arm.joints), 20.0)
     for q in arm.configurations(5, 5):
-        pose, seed = arm.pose(q), q + 0.01 * (np.arange(len(q)) - 3.0) * (len(arm.module.free) == 0)
+        pose, seed = (
+            arm.pose(q),
+            q + 0.01 * (np.arange(len(q)) - 3.0) * (len(arm.module.free_indices) == 0),
+        )
         nearest = plugin.get(pose, seed).values
         for overload in ("", "limits", "callback", "limits callback", "poses", "poses callback"):
             words = overload.split()
@@ -38,7 +41,7 @@ def test_consistency_limits_are_kept(arm: Arm, plugin: Plugin) -> None:
         q = np.clip(q, low + 0.11, high - 0.11)
         seed = q + 0.1 * np.cos(np.arange(n))
         within = plugin.search(arm.pose(q), seed, "limits", limits=np.full(n, 0.12), timeout=0.5)
-        if not arm.module.free:
+        if not arm.module.free_indices:
             assert within.good and np.abs(within.q - q).max() < 1e-6
         elif within.good:
             assert np.abs(arm.pose(within.q) - arm.pose(q)).max() < 1e-8
@@ -53,7 +56,7 @@ def test_consistency_limits_are_kept(arm: Arm, plugin: Plugin) -> None:
             timeout=0.0,
         )
         assert not outside.good and len(outside.seen) == 0 and len(outside.q) == 0
-        expected = driver.TIMED_OUT if arm.module.free else driver.NO_IK_SOLUTION
+        expected = driver.TIMED_OUT if arm.module.free_indices else driver.NO_IK_SOLUTION
         assert outside.code == expected
 
 
@@ -95,7 +98,7 @@ def test_unreachable_poses_have_no_solution(arm: Arm, plugin: Plugin) -> None:
 @needs(FRANKA)
 def test_a_held_joint_leaves_the_seed_only_in_a_search(arm: Arm, plugin: Plugin) -> None:
     assert plugin.initialize(arm.base, arm.tip, resolution=0.05).good
-    free = arm.module.free[0]
+    free = arm.module.free_indices[0]
     low, high = arm.bounds
     moved = 0
     for q, seed in zip(arm.configurations(9), arm.configurations(10), strict=True):
@@ -119,8 +122,8 @@ def test_values_of_a_held_joint_spread_from_the_seeds(arm: Arm, plugin: Plugin) 
     q = np.array([0.1, 0.2, -0.3, -2.0, 0.2, 1.8, 0.4])
     tried = plugin.search(arm.pose(q), q, "callback", rejections=10**6, timeout=0.2)
     assert not tried.good and tried.code == driver.TIMED_OUT
-    values = tried.seen[:, arm.module.free[0]]
-    low, high = (bound[arm.module.free[0]] for bound in arm.bounds)
+    values = tried.seen[:, arm.module.free_indices[0]]
+    low, high = (bound[arm.module.free_indices[0]] for bound in arm.bounds)
     assert (values[: (values == values[0]).sum()] == q[6]).all() and values[0] == q[6]
     assert (low <= values).all() and (values <= high).all()
     gaps = np.diff(np.unique(values))

@@ -45,7 +45,7 @@ def named(odd: str) -> SolverModule:
     dh = dataclasses.replace(
         module.dh, robot=odd, base_link=odd, tip_link=odd[::-1], joints=joints, free=(odd,)
     )
-    return dataclasses.replace(module, dh=dh, source_name=odd, free=(0,))
+    return dataclasses.replace(module, dh=dh, source_name=odd)
 
 
 def imported(text: str, folder: Path) -> Any:

@@ -127,10 +127,10 @@ def test_an_arm_that_fits_no_task_gets_the_position_with_a_joint_held(tmp_path: 
     path = tmp_path / "skew.urdf"
     path.write_text(serial_urdf("skew", list(SKEW)))
     found = derive(Request(path))
-    assert found.task.name == "position" and len(found.module.free) == 1 and found.chosen
+    assert found.task.name == "position" and len(found.module.free_indices) == 1 and found.chosen
     assert found.held is not None and not any("OVER" in text for text in announcements(found))
     whole = derive(Request(path, task="pose"))
-    assert whole.module.free == () and any("OVER" in text for text in announcements(whole))
+    assert whole.module.free_indices == () and any("OVER" in text for text in announcements(whole))
     held = derive(Request(path, free={"twist": None}))
     assert held.module.held == ("twist",) and held.task.name == "position"
     first = inspect_robot(Request(path)).attempts[0]

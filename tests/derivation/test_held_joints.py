@@ -126,7 +126,7 @@ def test_table_with_two_axes_on_one_line_holds_one_of_them() -> None:
     derivation = derive(Request(TWO_ON_A_LINE))
     assert derivation.held is not None
     assert set(derivation.held.joints) <= {"theta_5", "theta_6"}
-    assert len(derivation.module.free) == 1
+    assert len(derivation.module.free_indices) == 1
 
 
 def test_choice_is_explained_and_inspect_lists_it_first() -> None:
@@ -135,7 +135,7 @@ def test_choice_is_explained_and_inspect_lists_it_first() -> None:
     assert derivation.held.joints == ("fr3_joint7",)
     assert derivation.held.words.startswith("holding fr3_joint7: closed form by rules (")
     assert all(step.branches <= 2 for step in derivation.graph.steps)
-    assert derivation.module.free == (6,)
+    assert derivation.module.free_indices == (6,)
     tried = attempts(read(Request(FR3)), None, silent)
     assert tried[0].held == derivation.held.joints and tried[0].closed
     assert {one.held for one in tried[1:]} == {("fr3_joint4",), ("fr3_joint6",)}

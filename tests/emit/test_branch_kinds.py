@@ -26,11 +26,11 @@ from ikgen.tasks import find_task
 )
 def test_arms_with_a_shoulder_an_elbow_and_a_wrist(name: str, kind: str, end: int) -> None:
     dh = read(Request(robot_file(name))).dh
-    module = SimpleNamespace(plan=None, dh=dh, reads=find_task("pose"), free=(), lanes=8)
+    module = SimpleNamespace(plan=None, dh=dh, reads=find_task("pose"), free_indices=(), lanes=8)
     assert branch_kind(module) == kind
     if kind == "names":
         assert elbow_end(module) == end
-    for other in ({"reads": find_task("position")}, {"free": (0,)}, {"lanes": 4}):
+    for other in ({"reads": find_task("position")}, {"free_indices": (0,)}, {"lanes": 4}):
         assert branch_kind(SimpleNamespace(**{**vars(module), **other})) == "number"
     assert branch_kind(SimpleNamespace(**{**vars(module), "plan": object()})) == "orientation"
 
@@ -49,7 +49,7 @@ def test_each_trait_of_an_elbow_arm_is_needed(
     whole: dict[str, object], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     dh = SimpleNamespace(dof=6, rows=(None,) * 6)
-    module = SimpleNamespace(plan=None, dh=dh, reads=find_task("pose"), free=(), lanes=8)
+    module = SimpleNamespace(plan=None, dh=dh, reads=find_task("pose"), free_indices=(), lanes=8)
 
     def kind(**other: object) -> str:
         geometry = SimpleNamespace(**{**whole, **other})

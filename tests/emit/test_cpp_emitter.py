@@ -12,7 +12,7 @@ from tests.support.cpp_modules import solver_module
 
 import ikgen.runtime
 from ikgen.elimination.elimination_table import ELIMINATIONS
-from ikgen.emit.cpp.cpp_emitter import _headers
+from ikgen.emit.cpp.cpp_emitter import _headers, emit_header
 from ikgen.emit.solver_module import SolverModule
 from ikgen.model.dh import ARM_ANGLE_OPTION
 from ikgen.program.statements import Call
@@ -32,9 +32,7 @@ def test_a_header_has_what_its_arm_takes_and_no_more(rounded: bool, task: str, h
         free=tuple(joint.name for joint in exact().dh.joints[:held]),
         deviation=(0.0, 1e-3 if rounded else 0.0),
     )
-    module = replace(
-        exact(), dh=dh, task=task, free=tuple(range(held)), free_defaults=(0.0,) * held
-    )
+    module = replace(exact(), dh=dh, task=task, free_defaults=(0.0,) * held)
     found = _headers(module)
     assert ("newton/lane_refinement.hpp" in found) == ("held/displacement.hpp" in found) == rounded
     assert ("arm/whole_pose.hpp" in found) == (task == "pose") != ("arm/pose_entries.hpp" in found)
@@ -50,6 +48,18 @@ def test_a_header_has_what_its_arm_takes_and_no_more(rounded: bool, task: str, h
             angle
         )
         assert ("newton/lane_refinement.hpp" in _headers(angle)) == rounded
+
+
+@pytest.mark.parametrize("held", [0, 1, 2])
+def test_a_header_names_what_is_held_and_where_its_joints_are(held: int) -> None:
+    names = tuple(joint.name for joint in exact().dh.joints[1 : 1 + held])
+    dh = replace(exact().dh, free=names)
+    text = emit_header(replace(exact(), dh=dh, free_defaults=(0.0,) * held))
+    head = text[: text.index("namespace detail")]
+    quoted = ", ".join(f'"{name}"' for name in names)
+    told = f"std::array<const char*, kFree> kFreeNames = {{{quoted}}};"
+    places = f"std::array<int, {held}> kFreeJoints = {{{', '.join(map(str, range(1, 1 + held)))}}};"
+    assert (told in head) == (places in head) == ("kFreeNames" in head) == bool(held)
 
 
 def test_all_routines_are_told_to_those_who_write_emitters() -> None:

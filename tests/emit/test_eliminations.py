@@ -32,7 +32,7 @@ def solver_module(slide: int | None, *, both: bool = False) -> SolverModule:
     plan = EliminationPlan(frames, length, ((1, 0, 0),), 1.0, resultants, turning, both=both)
     program = elimination_program(dh, 16, both=both)
     return SolverModule(
-        name="arm", program=program, dh=dh, task="pose", free=(), free_defaults=(),
+        name="arm", program=program, dh=dh, task="pose", free_defaults=(),
         source_name="arm.toml", source_sha256="0" * 64, generator_version="test", plan=plan,
     )  # fmt: skip
 

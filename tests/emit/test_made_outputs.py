@@ -37,9 +37,7 @@ EVERY = (-INF, INF)
 
 def holding(*free: str) -> SolverModule:
     module = made_module()
-    names = [joint.name for joint in module.dh.joints]
-    places = tuple(names.index(name) for name in free if name in names)
-    return replace(module, dh=replace(module.dh, free=free), free=places)
+    return replace(module, dh=replace(module.dh, free=free))
 
 
 @pytest.mark.parametrize(

@@ -120,7 +120,7 @@ def test_arrays_give_the_rows_of_the_program() -> None:
 def test_where_branches_meet_is_told_for_one_held_joint_alone(held: int) -> None:
     module = made_module()
     free = ("q1", "q2")[:held]
-    other = replace(module, dh=replace(module.dh, free=free), free=(1, 2)[:held])
+    other = replace(module, dh=replace(module.dh, free=free))
     if not held:
         inputs = tuple(one for one in module.program.inputs if one.name != "held_q3")
         other = replace(other, program=replace(module.program, inputs=inputs))
@@ -227,7 +227,7 @@ def test_only_joints_that_may_be_outside_are_put_inside(
     value = "spread<1>(held_q3)"
     clamped = value if limits == every else f"clamp(2, {value}, range)"
     assert ProgramText(module).joint_values()[2] == (clamped, limits != every)
-    held = replace(module, dh=replace(module.dh, free=("q0",)), free=(0,))
+    held = replace(module, dh=replace(module.dh, free=("q0",)))
     held = with_limits(held, limits, every, every)
     program = replace(held.program, inputs=held.program.inputs[:3])
     clamped = VALUE if limits == every else f"clamp(0, {VALUE}, range)"

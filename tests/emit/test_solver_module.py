@@ -26,7 +26,7 @@ def test_rows_of_rounded_files_are_refined(
 ) -> None:
     dh = SimpleNamespace(deviation=(0.0, deviation), most_driven=1.0)
     module = SolverModule(
-        name="arm", program=None, dh=dh, task="pose", free=(), free_defaults=(),
+        name="arm", program=None, dh=dh, task="pose", free_defaults=(),
         source_name="", source_sha256="", generator_version="", plan=plan,
     )  # fmt: skip
     policy = SolvePolicy()
@@ -41,7 +41,7 @@ def test_rows_of_rounded_files_are_refined(
 def test_a_joint_that_moves_the_tool_several_times_as_far_is_put_on_limits_from_less_far() -> None:
     dh = SimpleNamespace(deviation=(0.0, 0.0), most_driven=4.0)
     module = SolverModule(
-        name="arm", program=None, dh=dh, task="pose", free=(), free_defaults=(),
+        name="arm", program=None, dh=dh, task="pose", free_defaults=(),
         source_name="", source_sha256="", generator_version="",
     )  # fmt: skip
     assert module.policy.limit_tolerance == SolvePolicy().limit_tolerance / 4.0

@@ -112,7 +112,7 @@ def test_postures_have_their_usual_names(name: str) -> None:
 def test_rows_are_called_what_the_module_calls_them(name: str) -> None:
     found, solver = example(name), solver_of(derivation(name))
     assert solver is not None
-    free = found.q[list(derivation(name).module.free)]
+    free = found.q[list(derivation(name).module.free_indices)]
     solved = solver.module.solve(found.pose, free=free if len(free) else None, limits=False)
     told = dict(zip(solved.branch, solved.q, strict=True))
     if name == "eliminated":  # all rows are on one branch of the closed form

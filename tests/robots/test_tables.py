@@ -137,7 +137,7 @@ def test_redundant_robot_is_pointed_out(name: str) -> None:
     warnings = read(request).source.warnings
     assert any("turn about one line" in text and "infinitely many" in text for text in warnings)
     found = derive(request)
-    assert [found.reading.dh.joints[j].name for j in found.module.free] == ["theta_6"]
+    assert [found.reading.dh.joints[j].name for j in found.module.free_indices] == ["theta_6"]
 
 
 @pytest.mark.parametrize("name", REDUNDANT)

@@ -46,7 +46,6 @@ def solver_module(name: str) -> SolverModule:
         program=lower(graph, model_error=2.0 * max(dh.deviation)),
         dh=dh,
         task="pose",
-        free=(),
         free_defaults=(),
         source_name=f"{name}.urdf",
         source_sha256="0" * 64,

@@ -114,7 +114,7 @@ class Arm:
     def held(self, q: Array, seed: Array) -> Array:
         """The configuration with the seed's values of the held joints."""
         out = q.copy()
-        out[list(self.module.free)] = seed[list(self.module.free)]
+        out[list(self.module.free_indices)] = seed[list(self.module.free_indices)]
         return out
 
     def pose(self, q: Array) -> Array:

@@ -57,5 +57,5 @@ def pan_lift() -> SolverModule:
         frames=file_frames(dh),
     )  # fmt: skip
     return SolverModule(
-        "pan_lift", program, dh, "position", (), (), "pan_lift.urdf", "0" * 64, "0", "pan and lift"
+        "pan_lift", program, dh, "position", (), "pan_lift.urdf", "0" * 64, "0", "pan and lift"
     )

@@ -36,11 +36,8 @@ def solver_module(dh: DHChain, *, name: str = "arm") -> SolverModule:
 def module_of(dh: DHChain, graph: SolutionGraph, *, name: str = "arm") -> SolverModule:
     """The solver module of a solution graph, free joints at 0."""
     assert not graph.open_joints
-    free = tuple(j for j, joint in enumerate(dh.joints) if joint.name in dh.free)
     program = lower(graph, model_error=2.0 * max(dh.deviation))
-    return SolverModule(
-        name, program, dh, "pose", free, (0.0,) * len(dh.held), "test", "0" * 64, "0"
-    )
+    return SolverModule(name, program, dh, "pose", (0.0,) * len(dh.held), "test", "0" * 64, "0")
 
 
 def import_text(text: str, folder: Path) -> ModuleType:

@@ -98,7 +98,7 @@ def test_a_sweep_goes_over_the_range_of_the_held_joint_and_can_be_ended() -> Non
         panel = scene.held_panel
         (slider,) = panel._sliders
         assert panel.values is not None
-        j = derivation.module.free[0]
+        j = derivation.module.free_indices[0]
         limits = derivation.reading.dh.joints[j].limits
         start, seen = slider.value, []
         slider.on_update(lambda _: seen.append(slider.value))

@@ -114,7 +114,6 @@ def _module(
         program=program,
         dh=dh,
         task=found.task.name,
-        free=dh.free_indices,
         free_defaults=free_defaults(dh, request.free.items()),
         source_name=request.robot.name,
         source_sha256=reading.source.sha256,

@@ -101,7 +101,7 @@ def package_name(name: str) -> str:
 def _values(module: SolverModule, package: str) -> dict[str, object]:
     """What the templates name."""
     joints = range(module.dh.dof)
-    periods = [0.0 if j in module.free else module.period(j) for j in joints]
+    periods = [0.0 if j in module.free_indices else module.period(j) for j in joints]
     who, email = name_and_email(module.maintainer or "user <user@todo.todo>")
     return {
         "m": module,

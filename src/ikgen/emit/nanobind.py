@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 from ikgen.emit.blanks import blanks
 from ikgen.emit.cpp.cpp_emitter import emit_header
-from ikgen.emit.cpp.cpp_language import literal as quoted
 from ikgen.emit.python.compiled_interface import emit_interface
 from ikgen.emit.rendering import render
 from ikgen.emit.solver_module import SolverModule
@@ -42,9 +41,7 @@ def emit(module: SolverModule) -> dict[str, str]:
         "m": module,
         "package": package,
         "namespace": f"{module.name}_ik",
-        "free_joints": module.held,
         "blanks": blanks(module),
-        "quoted": quoted,
         "elbow": module.dh.arm_angle,
         "version": _version(module.generator_version),
     }

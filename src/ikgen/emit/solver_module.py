@@ -44,10 +44,10 @@ def most_rows(lanes: int, refined: bool) -> int:
 class SolverModule:
     """One solver to emit.
 
-    `name` is the prefix of the emitted files (`<name>_ik.py`), `free` the indices of joints held free,
-    `free_defaults` the default values of what is `held` inside the limits (rad or m). `source_name` and
-    `source_sha256` tell what it was made from, `geometry` is the geometry class in words,
-    `plan` what an elimination needs where the rules did not solve the arm. Of a table
+    `name` is the prefix of the emitted files (`<name>_ik.py`), `free_defaults` the default values of
+    what is `held` inside the limits (rad or m). `source_name` and `source_sha256` tell what it was made
+    from, `geometry` is the geometry class in words, `plan` what an elimination needs where the rules did
+    not solve the arm. Of a table
     without numbers the constants are left to be filled in, or with `sample` those that its derivation
     was checked with. `maintainer` (`NAME <EMAIL>`) and `license` are for manifests of packages.
     """
@@ -56,7 +56,6 @@ class SolverModule:
     program: Program
     dh: DHChain
     task: str
-    free: tuple[int, ...]
     free_defaults: tuple[float, ...]
     source_name: str
     source_sha256: str
@@ -85,6 +84,11 @@ class SolverModule:
             "arm-angle": ("the arm angle", dh.arm_angle),
         }
         return {name: words for name, (words, needs) in needed.items() if needs}
+
+    @property
+    def free_indices(self) -> tuple[int, ...]:
+        """Indices of the joints that are held."""
+        return self.dh.free_indices
 
     @property
     def held(self) -> tuple[str, ...]:

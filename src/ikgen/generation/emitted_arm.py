@@ -14,16 +14,14 @@ __all__ = ["EmittedArm"]
 
 @dataclass(frozen=True, slots=True)
 class EmittedArm:
-    """An arm whose solver was emitted: `name` is the prefix of the files, `free` are the indices of its
-    held joints."""
+    """An arm whose solver was emitted: `name` is the prefix of the files."""
 
     name: str
     dh: DHChain
     task: str
-    free: tuple[int, ...]
     max_solutions: int
 
     @classmethod
     def of(cls, module: SolverModule) -> EmittedArm:
         """That of a module that is about to be emitted."""
-        return cls(module.name, module.dh, module.task, module.free, module.max_solutions)
+        return cls(module.name, module.dh, module.task, module.max_solutions)

@@ -107,7 +107,7 @@ class OutputChecks:
     def _arm(self) -> EmittedArm:
         dh, request = self.reading.dh, self.record.request
         task, most = request.task or POSE.name, self.record.max_solutions
-        return EmittedArm(self.record.name, dh, task, dh.free_indices, most)
+        return EmittedArm(self.record.name, dh, task, most)
 
     def _failed(self, name: str, error: IkgenError) -> Finding | None:
         if isinstance(error, BadDescriptionError) and self._gone(error.file):

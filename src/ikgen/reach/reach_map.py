@@ -76,7 +76,7 @@ def _measure(derivation: Derivation) -> tuple[tuple[int, int], tuple[int, ...], 
     that they are relative to."""
     task, dh = derivation.task, derivation.module.dh
     rows = (3, 3) if not task.position else (0, 6) if task.orientation else (0, 3)
-    moving = tuple(j for j in range(dh.dof) if j not in derivation.module.free)
+    moving = tuple(j for j in range(dh.dof) if j not in derivation.module.free_indices)
     size = float(sum(np.linalg.norm(F[:3, 3]) for F in dh.file_frames)) or 1.0
     return rows, moving, size
 

@@ -100,7 +100,9 @@ def _constants(names: SymbolNames, dh: DHChain) -> list[tuple[sympy.Symbol, str]
 def _held(derivation: Derivation, names: SymbolNames) -> list[tuple[sympy.Symbol, str]]:
     """DH values of held joints by default."""
     out = []
-    for joint, value in zip(derivation.module.free, derivation.module.free_defaults, strict=True):
+    for joint, value in zip(
+        derivation.module.free_indices, derivation.module.free_defaults, strict=True
+    ):
         row = derivation.graph.dh.lead_row(joint)
         out.append((names.joint(joint), repr(row.scale * value + row.offset.value)))
     return out

@@ -60,7 +60,7 @@ def solved(
     rest = [q for q in every if not _among(q, inside)]
     rows = np.array([*inside, *rest]).reshape(-1, dh.dof)
     names = runner.branch_names(rows)
-    moving = [j for j in range(dh.dof) if j not in derivation.module.free]
+    moving = [j for j in range(dh.dof) if j not in derivation.module.free_indices]
     branches = []
     for i, (q, name) in enumerate(zip(rows, names, strict=True)):
         J = file_jacobian(dh, q)[:, moving]

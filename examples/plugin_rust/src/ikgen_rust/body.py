@@ -46,7 +46,7 @@ def _inputs(module: SolverModule) -> list[str]:
     ]
     lines += [f"let {one.name} = q0[{one.joint}];" for one in program.inputs_of(SeedValue)]
     for one in program.inputs_of(HeldValue):
-        lines.append(f"let {one.name} = held[{module.free.index(one.joint)}];")
+        lines.append(f"let {one.name} = held[{module.free_indices.index(one.joint)}];")
     return lines + [f"let {let.name} = {_text(let.value)};" for let in program.prelude]
 
 

@@ -162,7 +162,7 @@ def _blocks(module: SolverModule) -> tuple[int, ...]:
     """The joints by blocks of their derivatives, where those of all rows are eliminated so."""
     if not _newton(module) or not module.reads.whole_pose or module.dh.arm_angle:
         return ()
-    moving = [j for j in range(module.dh.dof) if j not in module.free]
+    moving = [j for j in range(module.dh.dof) if j not in module.free_indices]
     return column_blocks(module.dh, moving, module.size)
 
 

@@ -167,10 +167,10 @@ class ProgramText:
             if let.name in self.lane_names:
                 lines.append(f"const auto {let.name} = spread<1>(seed.{let.name});")
         for one in program.inputs_of(HeldValue):
-            index = self.module.free.index(one.joint)
+            index = self.module.free_indices.index(one.joint)
             lines.append(f"const double {one.name} = held[{index}];")
         for angle in program.inputs_of(ArmAngle):
-            lines.append(f"const double {angle.name} = held[{len(self.module.free)}];")
+            lines.append(f"const double {angle.name} = held[{len(self.module.free_indices)}];")
         for let in program.prelude:
             if let not in self.seed_lets():
                 text = expression(CONSTANT, let.value)
@@ -227,7 +227,7 @@ class ProgramText:
 
     def _placed(self, joint: int, value: str) -> tuple[str, bool]:
         limits = self.module.dh.joints[joint].limits
-        half = 0.0 if joint in self.module.free else 0.5 * self.module.period(joint)
+        half = 0.0 if joint in self.module.free_indices else 0.5 * self.module.period(joint)
         if math.isinf(limits.lower) and math.isinf(limits.upper):
             return value, False
         if half and limits.lower <= -half and limits.upper >= half:

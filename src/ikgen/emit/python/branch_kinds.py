@@ -29,7 +29,7 @@ def _has_sides(module: SolverModule) -> bool:
     """Whether it is an upright elbow arm: the first axis at right angles to the second and third, which are
     parallel; then a spherical wrist, or a third parallel axis and two that meet at right angles."""
     dh, geometry = module.dh, classify(module.dh)
-    plain = module.reads.whole_pose and not module.free and dh.dof == len(dh.rows) == 6
+    plain = module.reads.whole_pose and not module.free_indices and dh.dof == len(dh.rows) == 6
     if not plain or geometry.kinds != "RRRRRR" or module.lanes != _SIDES:
         return False
     shoulder = 1 in geometry.perpendicular_pairs and 2 in geometry.parallel_pairs

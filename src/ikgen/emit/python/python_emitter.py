@@ -101,14 +101,14 @@ def known_facts(module: SolverModule) -> Facts:
         ("beside", SOME if module.beside else ()),
         ("branch_kind", branch_kind(module)),
         ("branches", branches),
-        ("free", SOME if module.free else ()),
+        ("free", SOME if module.free_indices else ()),
         ("free_joints", SOME if module.held else ()),
         ("policy.beside_anywhere", runtime_policy(module.policy).beside_anywhere),
         ("rounded", refined),
         (
             "square",
             module.reads.whole_pose
-            and module.dh.dof - len(module.free) == 6
+            and module.dh.dof - len(module.free_indices) == 6
             and not module.dh.arm_angle,
         ),
         ("together", SOME if refined else None),
@@ -128,13 +128,13 @@ def concrete_types(module: SolverModule) -> dict[Key, Key]:
 
 def _held_name(module: SolverModule) -> str:
     """What is held first, as the text of the module calls it; empty where nothing is."""
-    if module.dh.arm_angle and not module.free:
+    if module.dh.arm_angle and not module.free_indices:
         return "the arm angle"
     return module.held[0] if module.held else ""
 
 
 def _held_turns(module: SolverModule) -> bool:
-    return bool(module.free) and module.dh.lead_row(module.free[0]).revolute
+    return bool(module.free_indices) and module.dh.lead_row(module.free_indices[0]).revolute
 
 
 def _policy_values(policy: Policy) -> list[tuple[str, str]]:

@@ -20,9 +20,9 @@ def scalar_lines(module: SolverModule) -> list[str]:
     given = {one.name: f"q0[{one.joint}]" for one in program.inputs_of(SeedValue)}
     lines = []
     for one in program.inputs_of(HeldValue):
-        lines.append(f"{one.name} = held[{module.free.index(one.joint)}]")
+        lines.append(f"{one.name} = held[{module.free_indices.index(one.joint)}]")
     for angle in program.inputs_of(ArmAngle):
-        lines.append(f"{angle.name} = held[{len(module.free)}]")
+        lines.append(f"{angle.name} = held[{len(module.free_indices)}]")
     for let in program.prelude:
         lines.append(f"{let.name} = {expression(SCALAR, renamed(let.value, given))}")
     for index, level in enumerate(program.levels):
@@ -110,9 +110,9 @@ def _batch_inputs(module: SolverModule) -> list[str]:
     for seed in program.inputs_of(SeedValue):
         lines.append(f"{seed.name} = q0[:, {seed.joint}].reshape(lane)")
     for one in program.inputs_of(HeldValue):
-        lines.append(f"{one.name} = held[:, {module.free.index(one.joint)}].reshape(lane)")
+        lines.append(f"{one.name} = held[:, {module.free_indices.index(one.joint)}].reshape(lane)")
     for angle in program.inputs_of(ArmAngle):
-        lines.append(f"{angle.name} = held[:, {len(module.free)}].reshape(lane)")
+        lines.append(f"{angle.name} = held[:, {len(module.free_indices)}].reshape(lane)")
     lines += [f"{let.name} = {expression(BATCH, let.value)}" for let in program.prelude]
     return [
         *lines,
