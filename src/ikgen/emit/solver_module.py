@@ -109,15 +109,18 @@ class SolverModule:
 
     @property
     def policy(self) -> SolvePolicy:
-        """The tolerances of `solve`, four as far as the file is off what was solved.
+        """The tolerances of `solve`, five of them of this arm.
 
-        `limit_tolerance`: a joint that moves several axes, or one several times as far, takes the tool that
-        many times as far when it is put on its limit.
-        `fold_reach`: there two of them may start from one row; with those of poses beside, hardly ever far
-        from it.
-        `beside_reach`: there, and where a divisor of the closed form vanishes, others may start from none;
-        `broken_reach`: there others may lie all along a continuum that the file's arm has not;
-        `fold_product`: below it they may come in beside a second singularity.
+        - `limit_tolerance`: over `most_driven`, as a joint put on its limit moves the tool that many times
+          as far.
+        - `fold_reach`: below it a second solution of the file may lie beside a row; grows with the root of
+          the deviation.
+        - `beside_reach`: below it (everywhere if `far`) displaced poses are solved too, as a solution of
+          the file may have no closed-form row to start from.
+        - `broken_reach`: below it solutions may lie along a continuum that rounding broke; proportional to
+          the deviation.
+        - `fold_product`: product of the two smallest singular values below which another solution may come
+          in; likewise.
         """
         plain, off = SolvePolicy(), max(self.dh.deviation)
         root, tolerance = math.sqrt(off), plain.limit_tolerance / self.dh.most_driven

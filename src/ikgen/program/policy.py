@@ -32,39 +32,50 @@ REFINEMENT: tuple[RefineStage, ...] = (
 
 @dataclass(frozen=True, slots=True)
 class SolvePolicy:
-    """Tolerances and counts of `solve`, the same in every language.
+    """Tolerances and counts of `solve`, the same in every language but for `near`. Errors are in rad, or m
+    over the arm's size; the deviation is how far the file is off what was solved.
 
-    - `arrived`: error (rad, or m over the arm's size) below which refined rows are solutions, `exact`:
-      below which they give way to no better ones nearby; `rough_square`: squared error above which a row
-      is refined.
-    - `pose_tolerance`: how far a rotation's entries may be off; nearer ones are replaced by the nearest
-      rotation; `orthonormal`: what is round-off of them; `level`: by how much the squared length of a
-      heading may be short of 1.
-    - `coincident`: rows closer than that (rad or m) are one, singular ones closer than `alike` where
-      the pose is theirs to `halfway` between them too; of other singular ones that are `alike` at most
-      `crowd` are kept, as many as solutions meet at a point where two folds do; `meeting`: how close
-      branches are where their rows are compared. `limit_tolerance`: a row that far (rad or m) outside a
-      limit is put back on it, and one that far, `limit_reach`, where its pose does not tell that it is
-      outside, which Newton steps find out.
-    - `tries`: how many values of a joint that a pose leaves free are tried, `try_step` (rad) apart.
-    - `singular_below`: smallest singular value below which a refined row is singular; `continuum_below`
-      where the Program marked it already.
-    - `fold_reach`: smallest singular value below which another solution may be so near that the closed form
-      does not find it for itself.
-    - `beside_reach`: smallest singular value below which poses beside are solved as well, `anywhere` where
-      they always are; `fold`: these two over the root of how far the file is off. `broken_reach`: smallest
-      singular value below which a row may lie on a continuum that rounding broke, over how far the file is
-      off: along it the error is as small as that, and so is its slope.
-    - `farthest_start`: the largest first step (rad, m) of rows that are refined together, `contraction`:
-      the most that a step of theirs may be of the one before, `least_pivot`: how far the derivatives by a
-      joint must be from the span of others', `pivot_share`: the most that a first step may be of that
-      distance, unless the two smallest singular values have a product above `fold_product` times what the
-      file is off, as no other solution comes in there then, `least_miss`: the error that shows that they
-      end beside the pose, `near`: the largest step in C++ behind which the derivatives stay, `lane_steps`:
-      how many they take at most; other rows are refined one by one.
-    - `least_damping`, `damping`: a Newton step is damped by max(least, damping * error^2); `largest_step`
-      (rad or m) bounds each joint's; `converged`: error at which steps end; `patience` steps may pass
-      without the error falling to `progress` of what it was.
+    - `arrived`: error below which a refined row is a solution.
+    - `exact`: error below which a solution gives way to no better one nearby.
+    - `rough_square`: squared error above which a row is refined.
+    - `pose_tolerance`: how far a rotation's entries may be off; a nearer one is replaced by the nearest
+      rotation.
+    - `orthonormal`: how far a rotation's entries may be off by round-off.
+    - `level`: by how much a heading's squared length may be short of 1.
+    - `coincident`: rows closer than that (rad or m) are one.
+    - `alike`: singular rows closer than that (rad or m) are one, if the pose is theirs between them.
+    - `halfway`: error up to which the pose is that of what is between two rows.
+    - `crowd`: rows of a continuum that are alike, at most: as many as solutions meet where two folds do.
+    - `meeting`: how close branches are where their rows are compared.
+    - `limit_tolerance`: a row no farther outside a limit (rad or m) is put back on it.
+    - `limit_reach`: a row no farther outside a limit (rad or m) is tried on it, by Newton steps.
+    - `tries`, `try_step`: how many values are tried for a joint that a pose leaves free, so far
+      (rad) apart.
+    - `singular_below`: smallest singular value below which a refined row is singular.
+    - `continuum_below`: smallest singular value below which one is that the closed form marks.
+    - `fold_reach`: smallest singular value below which another solution may be nearer than the closed
+      form tells.
+    - `beside_reach`: smallest singular value below which poses beside are solved as well.
+    - `fold`: both over the root of the deviation, where there is one.
+    - `anywhere`: `beside_reach` from which on poses beside always are.
+    - `broken_reach`: smallest singular value, over the deviation, below which rounding may have broken a
+      continuum: along it the error is as small as that, and so is its slope.
+    - `farthest_start`: first step (rad or m), at most, of rows that are refined together; others are
+      refined one by one.
+    - `contraction`: the most that a further step of theirs may be of the one before.
+    - `least_pivot`: least distance of a joint's derivatives from the span of others'.
+    - `pivot_share`: the most that a first step may be of that distance, up to `fold_product`.
+    - `fold_product`: product of the two smallest singular values, over the deviation, above which it may be
+      more, as no other solution comes in there.
+    - `least_miss`: error that shows that a row ends beside the pose.
+    - `near`: the largest step behind which derivatives are not taken anew; of C++ alone.
+    - `lane_steps`: steps of rows that are refined together, at most.
+    - `least_damping`, `damping`: a Newton step is damped by max(least, damping * error^2).
+    - `largest_step`: a joint's Newton step (rad or m), at most.
+    - `converged`: error at which Newton steps end.
+    - `patience`, `progress`: steps end after so many without the error falling to that share of what it
+      was.
+    - `refinement`: how many steps rows take, by stages.
     """
 
     arrived: float = 0.5e-9
