@@ -9,13 +9,14 @@ import pytest
 from tests.support.probed import given
 
 from ikgen.algebra.expression_graph import ExpressionGraph
-from ikgen.forms.form import Array, Form
+from ikgen.forms.form import Form
 from ikgen.forms.linear_form import Linear
 from ikgen.forms.pair_form import LinearPair
 from ikgen.forms.quadratic_form import Quadratic
 from ikgen.forms.quartic_form import TrigQuartic
 from ikgen.forms.sine_cosine_form import SineCosine
 from ikgen.forms.tangent_form import Tangent
+from ikgen.model.arrays import Array
 
 COEFFICIENTS = [
     np.array(c)

@@ -11,8 +11,8 @@ from ikgen.kinematics.forward import file_forward
 from ikgen.kinematics.modified_dh import to_dh
 from ikgen.kinematics.rigid import rotation_x, rotation_z
 from ikgen.kinematics.twist_links import TwistChain, twist_chain
+from ikgen.model.arrays import Array
 from ikgen.model.chain import Chain
-from ikgen.model.joint_tree import Matrix
 
 Y = [0.0, 1.0, 0.0]
 SLIDES = make_chain(
@@ -29,7 +29,7 @@ SLIDES = make_chain(
 )
 
 
-def pose(chain: TwistChain, q: np.ndarray) -> Matrix:
+def pose(chain: TwistChain, q: np.ndarray) -> Array:
     T = chain.first
     for link in chain.links:
         value = link.scale * q[link.driver] + link.offset

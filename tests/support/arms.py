@@ -7,11 +7,12 @@ from typing import Any
 
 import numpy as np
 
+from ikgen.model.arrays import Array
 from ikgen.model.chain import ActuatedJoint, Chain, ChainAxis
-from ikgen.model.joint_tree import Limits, Matrix
+from ikgen.model.joint_tree import Limits
 
 
-def origin(xyz: list[float], rpy: list[float]) -> Matrix:
+def origin(xyz: list[float], rpy: list[float]) -> Array:
     """URDF origin as (4, 4): `Rz(yaw) Ry(pitch) Rx(roll)`."""
     (cr, cp, cy), (sr, sp, sy) = (tuple(f(v) for v in rpy) for f in (math.cos, math.sin))
     T = np.eye(4)

@@ -9,13 +9,14 @@ from numpy.typing import ArrayLike
 
 from ikgen.kinematics.fixed_order import product
 from ikgen.kinematics.rigid import axis_motion
+from ikgen.model.arrays import Array
 from ikgen.model.chain import PRISMATIC, REVOLUTE, ActuatedJoint, Chain, ChainAxis
-from ikgen.model.joint_tree import Limits, Matrix
+from ikgen.model.joint_tree import Limits
 
 FREE = Limits(-math.inf, math.inf)
 
 
-def rotation(axis: list[float], angle: float) -> Matrix:
+def rotation(axis: list[float], angle: float) -> Array:
     """(4, 4) rotation about `axis` (3,) by `angle` (rad)."""
     n = np.asarray(axis, dtype=float) / np.linalg.norm(axis)
     K = np.array([[0.0, -n[2], n[1]], [n[2], 0.0, -n[0]], [-n[1], n[0], 0.0]])
@@ -24,14 +25,14 @@ def rotation(axis: list[float], angle: float) -> Matrix:
     return T
 
 
-def translation(x: float, y: float, z: float) -> Matrix:
+def translation(x: float, y: float, z: float) -> Array:
     """(4, 4) translation in m."""
     T = np.eye(4)
     T[:3, 3] = x, y, z
     return T
 
 
-def chain_forward(chain: Chain, q: ArrayLike) -> Matrix:
+def chain_forward(chain: Chain, q: ArrayLike) -> Array:
     """`T_base_tip` of the file's chain as `Chain` defines it."""
     values = np.asarray(q, dtype=np.float64)
     T = np.eye(4)
@@ -42,7 +43,7 @@ def chain_forward(chain: Chain, q: ArrayLike) -> Matrix:
 
 
 def make_chain(
-    kinds: str, transforms: list[Matrix], axes: list[list[float]], tip: Matrix | None = None
+    kinds: str, transforms: list[Array], axes: list[list[float]], tip: Array | None = None
 ) -> Chain:
     """A chain of R and P joints from joint frames and axes in them."""
     names = {"R": REVOLUTE, "P": PRISMATIC}
@@ -55,7 +56,7 @@ def make_chain(
     return Chain("made", "base", "tip", joints, chain_axes, tip)
 
 
-def rewritten(chain: Chain, rng: np.random.Generator) -> tuple[Chain, Matrix]:
+def rewritten(chain: Chain, rng: np.random.Generator) -> tuple[Chain, Array]:
     """The same motion with other joint frames and some axes reversed; signs (n,) of its joints.
 
     Each joint frame moves along and turns about its own axis (for sliding joints anywhere), and is

@@ -10,8 +10,9 @@ from ikgen.chains.merged_axes import merged_axes
 from ikgen.chains.mimic import Coupling
 from ikgen.kinematics.fixed_order import product
 from ikgen.kinematics.rigid import axis_motion, read_only
+from ikgen.model.arrays import Array
 from ikgen.model.chain import PRISMATIC, REVOLUTE, ActuatedJoint, Chain, ChainAxis
-from ikgen.model.joint_tree import Joint, JointType, Matrix
+from ikgen.model.joint_tree import Joint, JointType
 
 __all__ = ["assemble"]
 
@@ -45,7 +46,7 @@ def _axes(
     couplings: Mapping[str, Coupling],
     drivers: Sequence[Joint],
     locked: Mapping[str, float],
-) -> tuple[tuple[ChainAxis, ...], Matrix]:
+) -> tuple[tuple[ChainAxis, ...], Array]:
     """The moving axes, and the transform (4, 4) from the last one's joint frame to the tip."""
     axes: list[ChainAxis] = []
     T = np.eye(4)  # from the previous axis' joint frame

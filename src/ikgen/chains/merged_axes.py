@@ -15,8 +15,8 @@ import numpy as np
 
 from ikgen.kinematics.fixed_order import dot, length, product
 from ikgen.kinematics.rigid import axis_motion, read_only
+from ikgen.model.arrays import Array
 from ikgen.model.chain import PRISMATIC, ChainAxis
-from ikgen.model.joint_tree import Matrix
 
 __all__ = ["merged_axes"]
 
@@ -25,8 +25,8 @@ _SAME = 1e-12
 
 
 def merged_axes(
-    axes: Sequence[ChainAxis], T_last_tip: Matrix
-) -> tuple[tuple[ChainAxis, ...], Matrix]:
+    axes: Sequence[ChainAxis], T_last_tip: Array
+) -> tuple[tuple[ChainAxis, ...], Array]:
     """The axes of a chain and the transform (4, 4) behind them, the same motion with as few axes."""
     merged: list[ChainAxis] = []
     T = np.eye(4)  # from where the last merged axis ends to the frame that the file has there
@@ -39,7 +39,7 @@ def merged_axes(
     return tuple(merged), read_only(product(T, T_last_tip))
 
 
-def _longest(first: ChainAxis, others: Sequence[ChainAxis]) -> tuple[ChainAxis, Matrix, int]:
+def _longest(first: ChainAxis, others: Sequence[ChainAxis]) -> tuple[ChainAxis, Array, int]:
     """An axis with as many of the next ones as are one with it: that one, the transform behind it, and how
     many they are."""
     best = first, np.eye(4), 1
@@ -68,7 +68,7 @@ class _Slide:
         self._T = product(self._T, axis_motion(False, axis.axis, axis.offset))
         return True
 
-    def as_one(self) -> tuple[ChainAxis, Matrix] | None:
+    def as_one(self) -> tuple[ChainAxis, Array] | None:
         far = length(self._moved)
         if far <= _SAME:
             return None
@@ -83,8 +83,8 @@ class _Turn:
 
     first: ChainAxis
     turn: float = 0.0  # how often q, at the last axis
-    rotation: Matrix = field(default_factory=lambda: np.eye(4))  # the constant one behind it
-    moved: list[tuple[float, Matrix]] = field(default_factory=list)  # what turns how often
+    rotation: Array = field(default_factory=lambda: np.eye(4))  # the constant one behind it
+    moved: list[tuple[float, Array]] = field(default_factory=list)  # what turns how often
 
     def __post_init__(self) -> None:
         self._turn(self.first, 1.0)
@@ -106,7 +106,7 @@ class _Turn:
         self._turn(axis, sign)
         return True
 
-    def as_one(self) -> tuple[ChainAxis, Matrix] | None:
+    def as_one(self) -> tuple[ChainAxis, Array] | None:
         before, behind = np.eye(4), self.rotation.copy()
         for turn, moved in self.moved:
             along = dot(moved, self.first.axis) * self.first.axis

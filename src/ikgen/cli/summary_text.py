@@ -76,7 +76,7 @@ def _task(derivation: Derivation) -> str:
     if not derivation.chosen or task.whole_pose:
         return task.words + (f" ({failed})" if failed else "")
     dh = derivation.reading.dh
-    why = f"what fits {counted(dh.dof - len(dh.free), 'joint')}" + (f"; {failed}" if failed else "")
+    why = f"what fits {counted(dh.moving, 'joint')}" + (f"; {failed}" if failed else "")
     return f"{task.words} (--task {task.name}: {why})"
 
 

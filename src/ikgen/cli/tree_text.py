@@ -10,8 +10,9 @@ from ikgen.cli.tables import table
 from ikgen.library.dh_text import row_texts
 
 if TYPE_CHECKING:
+    from ikgen.model.arrays import Array
     from ikgen.model.dh import Angle, DHChain, Length
-    from ikgen.model.joint_tree import Joint, JointTree, Limits, Matrix
+    from ikgen.model.joint_tree import Joint, JointTree, Limits
 
 __all__ = ["dh_table", "joint_tree", "transform_text"]
 
@@ -74,7 +75,7 @@ def _turns(constant: Angle | Length) -> bool:
     return not hasattr(constant, "sign")
 
 
-def transform_text(T: Matrix) -> tuple[str, str]:
+def transform_text(T: Array) -> tuple[str, str]:
     """A rigid transform (4, 4) as URDF writes it: `xyz` (m) and `rpy` (rad: turns about the fixed x, y and
     z axes, one after the other)."""
     level = math.hypot(T[0, 0], T[1, 0])

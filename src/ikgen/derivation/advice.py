@@ -11,6 +11,7 @@ from ikgen.derivation.held_joints import HeldChoice, held_choices
 from ikgen.derivation.held_needs import needs_held
 from ikgen.derivation.progress import Progress
 from ikgen.derivation.task_forms import ClosedForm, Demand, as_written
+from ikgen.tasks import POSE
 
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Reading
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Attempt", "attempt", "attempts"]
 
-_POSE_FREEDOMS = 6
 _ENOUGH = 3
 
 
@@ -86,7 +86,7 @@ def attempts(
     in which they are taken without options. An arm with fewer joints than a pose has freedoms is tried with
     the tasks that fit, the whole pose among them, and with smaller ones.
     """
-    from ikgen.tasks import POSE, find_task
+    from ikgen.tasks import find_task
 
     demand = Demand(asked, (), progress, axis=axis)
     choices = held_choices(reading, find_task(asked or POSE.name))
@@ -94,7 +94,7 @@ def attempts(
         return _attempts_held(reading, choices, demand)
     progress("derive", asked or "the task that fits")
     taken = attempt(closed_form(reading, demand), progress)
-    if asked is not None or reading.dh.dof - len(reading.dh.free) >= _POSE_FREEDOMS:
+    if asked is not None or reading.dh.moving >= POSE.freedoms:
         return [taken]
     default = taken.closed and not needs_held(reading.dh, find_task(taken.task))
     found = [replace(taken, default=default), *_other_tasks(reading, taken.task, demand)]
@@ -106,7 +106,7 @@ def _other_tasks(reading: Reading, taken: str, demand: Demand) -> list[Attempt]:
     from ikgen.tasks import smaller_tasks
     from ikgen.tasks.fitting import fitting_tasks
 
-    moving = reading.dh.dof - len(reading.dh.free)
+    moving = reading.dh.moving
     less = [t for t in smaller_tasks(moving) if t.freedoms == moving - 1]
     found = []
     for task in [*fitting_tasks(reading.dh, demand.axis), *less]:
@@ -143,7 +143,7 @@ def _attempts_held(
 
 def _held_chains(reading: Reading, task: Task) -> list[DHChain]:
     """The chain with as many joints held as move the task in vain; none where too many would be."""
-    spare = reading.dh.dof - len(reading.dh.free) - task.freedoms
+    spare = reading.dh.moving - task.freedoms
     if spare <= 0:
         return [reading.dh]
     choices = held_choices(reading, task)
@@ -171,7 +171,7 @@ def attempt(form: ClosedForm, progress: Progress) -> Attempt:
         order,
         tuple(dh.joints[j].name for j in left),
         weak=_weak_steps(graph) if form.closed and form.plan is None else (),
-        implied=task.whole_pose and dh.dof - len(dh.free) >= _POSE_FREEDOMS,
+        implied=task.whole_pose and dh.moving >= POSE.freedoms,
         dh=dh,
         two_branch=form.plan is not None or form.two_branch,
     )

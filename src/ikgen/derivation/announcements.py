@@ -61,7 +61,7 @@ def _over_constrained(derivation: Derivation) -> str:
     dh, task = derivation.reading.dh, derivation.task
     if not over_constrained(dh, task):
         return ""
-    moving, fixed = dh.dof - len(dh.free), freedoms_fixed(dh, task)
+    moving, fixed = dh.moving, freedoms_fixed(dh, task)
     other = next((t.name for t in fitting_tasks(dh) if not t.whole_pose), "")
     smaller = f"--task {other} asks what the arm can do everywhere; " if other else ""
     if derivation.chosen:

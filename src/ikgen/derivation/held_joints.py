@@ -17,9 +17,9 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Reading
+    from ikgen.model.arrays import Array
     from ikgen.model.chain import ActuatedJoint
     from ikgen.model.dh import DHChain
-    from ikgen.model.joint_tree import Matrix
     from ikgen.tasks import Task
 
 __all__ = ["DIVIDING", "NEARBY", "HeldChoice", "held_choices", "nearby"]
@@ -223,7 +223,7 @@ def _moving(dh: DHChain) -> list[int]:
     return [j for j, joint in enumerate(dh.joints) if joint.name not in dh.free]
 
 
-def _singular(motion: Matrix, subsets: Sequence[Sequence[int]]) -> Matrix:
+def _singular(motion: Array, subsets: Sequence[Sequence[int]]) -> Array:
     """`motion_ratios` of each subset of the joints: (subsets, joints)."""
     import numpy as np
 
@@ -232,7 +232,7 @@ def _singular(motion: Matrix, subsets: Sequence[Sequence[int]]) -> Matrix:
     return motion_ratios(np.stack([motion[:, :, list(columns)] for columns in subsets]))
 
 
-def _inside(dh: DHChain) -> Matrix:
+def _inside(dh: DHChain) -> Array:
     """Configurations (_LOOKED_AT, dof) inside the limits, the same each time; at most half a turn, or the
     arm's length, from 0."""
     import numpy as np
@@ -245,7 +245,7 @@ def _inside(dh: DHChain) -> Matrix:
     return np.asarray(low + share * (high - low))
 
 
-def _by_default(choices: Sequence[HeldChoice], task: Task, inside: Matrix) -> list[HeldChoice]:
+def _by_default(choices: Sequence[HeldChoice], task: Task, inside: Array) -> list[HeldChoice]:
     """With a conditioning to which configurations with the held joints at their defaults count as much as
     all others: that is how the arm is used without a seed."""
     import numpy as np
@@ -265,7 +265,7 @@ def _by_default(choices: Sequence[HeldChoice], task: Task, inside: Matrix) -> li
     return out
 
 
-def _measures(motion: Matrix) -> tuple[float, float]:
+def _measures(motion: Array) -> tuple[float, float]:
     """The geometric means over the samples of smallest over largest singular value, and of the product of
     all (Yoshikawa 1985, manipulability)."""
     import numpy as np

@@ -70,7 +70,7 @@ def check_held(request: Request, dh: DHChain, task: Task, passed_over: Collectio
 
     if request.task is not None or not request.free or not needs_held(dh, task):
         return
-    moving, held = dh.dof - len(dh.free), " and ".join(f"'{name}'" for name in dh.free)
+    moving, held = dh.moving, " and ".join(f"'{name}'" for name in dh.free)
     tried = [f"'{t.name}'" for t in fitting_tasks(dh, request.tool_axis) if not t.whole_pose]
     failed = ", ".join(f"'{name}'" for name in passed_over)
     causes = [f"none has a closed form: {', '.join(tried)}"] if tried else ["there is none"]

@@ -35,7 +35,7 @@ def idle_warning(dh: DHChain, task: Task) -> str:
     idle = idle_solved(dh, task)
     if not idle:
         return ""
-    moving = dh.dof - len(dh.free) - len(idle)
+    moving = dh.moving - len(idle)
     names = " and ".join(f"'{joint.name}'" for joint in idle)
     verb = "hardly moves" if len(idle) == 1 else "hardly move"
     return (

@@ -70,7 +70,7 @@ class Inspection:
     @property
     def moving(self) -> int:
         """How many joints of the chain are not held."""
-        return self.reading.dh.dof - len(self.reading.dh.free) if self.reading else 0
+        return self.reading.dh.moving if self.reading else 0
 
     @property
     def warnings(self) -> tuple[str, ...]:

@@ -28,7 +28,7 @@ def tip_on_axis(dh: DHChain, task: Task) -> str:
     from ikgen.tasks.fitting import fitting_tasks, over_constrained
 
     last, out, length = dh.rows[-1], dh.file_frames[-1], reach(dh)
-    moving = dh.dof - len(dh.free)
+    moving = dh.moving
     if moving > _MOST_JOINTS or not last.revolute or dh.joints[last.driver].name in dh.free:
         return ""
     if np.abs(out[:2, 3]).max() > _ON_AXIS * length:

@@ -26,7 +26,7 @@ from ikgen.elimination.plan import (
 )
 from ikgen.elimination.routine import Elimination, Plan, initial_residuals
 from ikgen.kinematics.rigid import read_only
-from ikgen.model.joint_tree import Matrix
+from ikgen.model.arrays import Array
 from ikgen.runtime.python.arm.chain_kinematics import Chain, Motion, chain_of, forward, jacobian
 from ikgen.runtime.python.elimination.coupled_angle import (
     CoupledAngle,
@@ -46,7 +46,7 @@ _ROUNDING = 1e-12
 """Harmonics below it, of the largest, are none."""
 
 
-def choose_coupled(frames: Matrix, motions: tuple[Motion, ...]) -> EliminationPlan | None:
+def choose_coupled(frames: Array, motions: tuple[Motion, ...]) -> EliminationPlan | None:
     """The best eliminations for a chain of six revolute joints, frames (n + 1, 4, 4) with n > 6 motions, or
     for all of a family (m, n + 1, 4, 4): those of the least degree that find all solutions, else those that
     find most. None where no elimination applies."""
@@ -71,7 +71,7 @@ def choose_coupled(frames: Matrix, motions: tuple[Motion, ...]) -> EliminationPl
     return best
 
 
-def _probe(frames: Matrix, chain: Chain, q: Matrix, plans: list[Plan]) -> tuple[Matrix, Matrix]:
+def _probe(frames: Array, chain: Chain, q: Array, plans: list[Plan]) -> tuple[Array, Array]:
     """Which plan finds which solution of the poses of configurations q (n, 6), and the digits that each
     loses; the chain is the frames' in lengths over the plans'."""
     poses = forward(chain, q)
@@ -90,7 +90,7 @@ _Group = tuple[_Crowded, list[Elimination]]
 def _eliminations(chain: Chain, rng: np.random.Generator) -> list[_Group]:
     """Those that apply, each with its degree, in groups of one degree and the same crowded angles, the
     least degree first."""
-    nodes: Matrix = 2.0 * np.pi / _NODES * np.arange(_NODES, dtype=float)
+    nodes: Array = 2.0 * np.pi / _NODES * np.arange(_NODES, dtype=float)
     poses = forward(chain, rng.uniform(-np.pi, np.pi, (_POSES, 6)))
     joints = [motion[0] for motion in chain.motions]
     coupled, singles = coupled_and_others(chain.motions)
@@ -116,7 +116,7 @@ def _degree(values: NDArray[np.float64]) -> int:
     return int(large[-1]) if len(large) else 0
 
 
-def _configurations(chain: Chain, count: int, rng: np.random.Generator) -> Matrix:
+def _configurations(chain: Chain, count: int, rng: np.random.Generator) -> Array:
     """`half_hard` of many."""
     drawn = rng.uniform(-np.pi, np.pi, (12 * count, 6))
     size = np.asarray(np.linalg.svd(jacobian(chain, drawn), compute_uv=False)[:, -1], dtype=float)

@@ -11,7 +11,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ikgen.model.joint_tree import Matrix
+from ikgen.model.arrays import Array
 
 __all__ = ["crowded_angles"]
 
@@ -23,12 +23,12 @@ _LEAST = 3.0
 
 
 def crowded_angles(
-    cosines: Callable[[Matrix], Matrix], determinants: Callable[[Matrix], Matrix]
+    cosines: Callable[[Array], Array], determinants: Callable[[Array], Array]
 ) -> tuple[tuple[float, int], ...]:
     """The angles (rad, multiples of 2 pi / 256) near which `determinants` (N, n) of N poses at angles (n,)
     all have a root of high order, and that order, among those at which one of the `cosines` (m, n) between
     neighbouring axes is the nearest to 1 or -1."""
-    grid: Matrix = 2.0 * np.pi / _GRID * np.arange(_GRID, dtype=float)
+    grid: Array = 2.0 * np.pi / _GRID * np.arange(_GRID, dtype=float)
     found: dict[float, int] = {}
     for values in cosines(grid):
         size = np.abs(values)
@@ -40,7 +40,7 @@ def crowded_angles(
     return tuple(sorted(found.items()))
 
 
-def _order(determinants: Callable[[Matrix], Matrix], angle: float) -> float:
+def _order(determinants: Callable[[Array], Array], angle: float) -> float:
     """The order of the root near an angle."""
     size = np.log2(np.abs(determinants(angle + _NEAR * np.array([1.0, 0.5, -1.0, -0.5]))) + 1e-300)
     return float(np.median([size[:, 0] - size[:, 1], size[:, 2] - size[:, 3]]))

@@ -8,15 +8,15 @@ import numpy as np
 
 from ikgen.kinematics.fixed_order import product
 from ikgen.kinematics.rigid import z_motion
+from ikgen.model.arrays import Array
 from ikgen.model.dh import DHChain
-from ikgen.model.joint_tree import Matrix
 
 __all__ = ["forward", "held_frames", "hold_joint", "jacobian", "over", "typical_length"]
 
 _LEAST_WITH_SLIDES = 0.1  # m
 
 
-def held_frames(dh: DHChain, value: float = 0.0) -> Matrix:
+def held_frames(dh: DHChain, value: float = 0.0) -> Array:
     """The file's own chain (n + 1, 4, 4) between the DH variables (rad or m) of its n moving rows, the
     free joints held at `value` (rad or m).
 
@@ -31,28 +31,28 @@ def held_frames(dh: DHChain, value: float = 0.0) -> Matrix:
     return frames
 
 
-def hold_joint(frames: Matrix, joint: int, value: float, *, revolute: bool = True) -> Matrix:
+def hold_joint(frames: Array, joint: int, value: float, *, revolute: bool = True) -> Array:
     """The chain (n, 4, 4) that is left of (n + 1, 4, 4) with joint `joint` (0-based) held at
     `value` rad or m."""
     merged = product(frames[joint], z_motion(revolute, value), frames[joint + 1])
     return np.concatenate([frames[:joint], merged[None], frames[joint + 2 :]])
 
 
-def typical_length(frames: Matrix, turning: Sequence[bool] | None = None) -> float:
+def typical_length(frames: Array, turning: Sequence[bool] | None = None) -> float:
     """Sum of the distances between the axes' frames (m): the scale of the arm. It is at least 0.1 m where a
     joint slides, as slides alone may give an arm its size."""
     least = 1e-9 if turning is None or all(turning) else _LEAST_WITH_SLIDES
     return max(float(np.linalg.norm(frames[1:-1, :3, 3], axis=1).sum()), least)
 
 
-def over(frames: Matrix, length: float) -> Matrix:
+def over(frames: Array, length: float) -> Array:
     """Transforms (..., 4, 4) with lengths over one (m)."""
-    scaled: Matrix = frames.copy()
+    scaled: Array = frames.copy()
     scaled[..., :3, 3] /= length
     return scaled
 
 
-def forward(frames: Matrix, values: Matrix, turning: Sequence[bool] | None = None) -> Matrix:
+def forward(frames: Array, values: Array, turning: Sequence[bool] | None = None) -> Array:
     """Poses (..., 4, 4) at joint values (..., n), rad or m; `turning` (None: all) says which turn."""
     T = frames[0]
     each = np.moveaxis(values, -1, 0)
@@ -61,7 +61,7 @@ def forward(frames: Matrix, values: Matrix, turning: Sequence[bool] | None = Non
     return np.asarray(T)
 
 
-def jacobian(frames: Matrix, values: Matrix, turning: Sequence[bool] | None = None) -> Matrix:
+def jacobian(frames: Array, values: Array, turning: Sequence[bool] | None = None) -> Array:
     """Geometric Jacobians (..., 6, n) at the values (..., n): linear rows over the typical length, then
     angular; of slides by their value over that length."""
     axes, each = [], np.moveaxis(values, -1, 0)
@@ -79,5 +79,5 @@ def jacobian(frames: Matrix, values: Matrix, turning: Sequence[bool] | None = No
     return np.stack(columns, axis=-1)
 
 
-def _kinds(values: Matrix, turning: Sequence[bool] | None) -> Sequence[bool]:
+def _kinds(values: Array, turning: Sequence[bool] | None) -> Sequence[bool]:
     return (True,) * len(values) if turning is None else turning

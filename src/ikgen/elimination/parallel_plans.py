@@ -14,7 +14,7 @@ import numpy as np
 
 from ikgen.elimination.loop_frames import forward, over, typical_length
 from ikgen.elimination.routine import Elimination, Plan, Turning, six_joints_batch
-from ikgen.model.joint_tree import Matrix
+from ikgen.model.arrays import Array
 from ikgen.runtime.python.elimination.general_6r import Candidates
 from ikgen.runtime.python.elimination.loop_equations import loop_constants
 from ikgen.runtime.python.elimination.parallel_axes import parallel_candidates
@@ -87,7 +87,7 @@ class ParallelPlan:
         return self.kind is ParallelKind.PLAIN or self.deviation < _EXACT
 
 
-def choose_parallel(family: Matrix) -> ParallelPlan | None:
+def choose_parallel(family: Array) -> ParallelPlan | None:
     """The first of those that settle most poses of a family of chains (m, 7, 4, 4), six revolute joints;
     None where no two axes are parallel beside links of a kind."""
     length, rng = typical_length(family[0]), np.random.default_rng(0)
@@ -104,7 +104,7 @@ def choose_parallel(family: Matrix) -> ParallelPlan | None:
     return every[first] if best > _WORTH * len(family) else None
 
 
-def parallel_plans(family: Matrix) -> tuple[ParallelPlan, ...]:
+def parallel_plans(family: Array) -> tuple[ParallelPlan, ...]:
     """All that suit every chain of the family (m, 7, 4, 4), of each loop the one of the least degree."""
     parts = [_deviations(member) for member in family]
     every = {e: max(part[e] for part in parts) for e in parts[0] if all(e in p for p in parts)}
@@ -112,7 +112,7 @@ def parallel_plans(family: Matrix) -> tuple[ParallelPlan, ...]:
     return tuple(ParallelPlan(e[:2], ParallelKind(e[2]), every[e]) for e in found if e is not None)
 
 
-def _deviations(frames: Matrix) -> dict[Elimination, float]:
+def _deviations(frames: Array) -> dict[Elimination, float]:
     """Of one chain (7, 4, 4)."""
     length = typical_length(frames)
     scaled = over(frames, length)
@@ -136,11 +136,11 @@ def with_parallel(plan: Plan, parallel: ParallelPlan | None) -> Plan:
     return replace(plan, direct=((parallel_candidates, parallel.elimination, parallel.error),))
 
 
-def settled_share(frames: Matrix, length: float, parallel: ParallelPlan, poses: Matrix) -> float:
+def settled_share(frames: Array, length: float, parallel: ParallelPlan, poses: Array) -> float:
     """The share of poses (N, 4, 4) that the parallel elimination solves alone; frames (7, 4, 4)."""
     left = [0]
 
-    def rest(_: Sequence[Matrix], T: Matrix, one: Elimination, turning: Turning) -> Candidates:
+    def rest(_: Sequence[Array], T: Array, one: Elimination, turning: Turning) -> Candidates:
         left.append(len(T))
         nothing = np.zeros(len(T), dtype=np.intp)
         return nothing[:0], np.zeros((0, 6)), nothing, nothing > 0

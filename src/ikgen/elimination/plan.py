@@ -27,7 +27,7 @@ from ikgen.elimination.parallel_plans import ParallelPlan, choose_parallel
 from ikgen.elimination.resultant import RESULTANTS, Resultant, root_shifts
 from ikgen.elimination.routine import Elimination, Plan, Turning, initial_residuals
 from ikgen.kinematics.rigid import read_only
-from ikgen.model.joint_tree import Matrix
+from ikgen.model.arrays import Array
 from ikgen.runtime.python.arm.chain_kinematics import Motion
 from ikgen.runtime.python.elimination.coupled_angle import coupled_and_others
 
@@ -72,7 +72,7 @@ class EliminationPlan:
     half angles, as either alone leaves no rank.
     """
 
-    frames: Matrix
+    frames: Array
     length: float
     eliminations: tuple[Elimination, ...]
     recall: float
@@ -128,9 +128,9 @@ def eliminations(turning: Turning, *, both: bool = False) -> tuple[Elimination, 
 
 
 def choose_plan(
-    frames: Matrix,
+    frames: Array,
     turning: Turning = _REVOLUTE,
-    special: Sequence[Matrix] = (),
+    special: Sequence[Array] = (),
     *,
     probes: int = 24,
 ) -> EliminationPlan:
@@ -154,9 +154,9 @@ def choose_plan(
 
 
 def _chosen(
-    family: Matrix,
+    family: Array,
     turning: Turning,
-    special: Sequence[Matrix],
+    special: Sequence[Array],
     probes: int,
     *,
     both: bool = False,
@@ -165,7 +165,7 @@ def _chosen(
     rng, ways = np.random.default_rng(0), eliminations(turning, both=both)
     each = max(probes // len(family), 2)
 
-    def probed(member: Matrix, count: int) -> _Probe:
+    def probed(member: Array, count: int) -> _Probe:
         length, find = typical_length(member, turning), finder(turning, both=both)
         return _probe(member, [Plan(length, (e,), turning, find) for e in ways], count, rng)
 
@@ -188,7 +188,7 @@ def _chosen(
     )
 
 
-def ranking(hits: Matrix, rough: Matrix, opposite: int = 0) -> list[int]:
+def ranking(hits: Array, rough: Array, opposite: int = 0) -> list[int]:
     """The eliminations to keep: most solutions together with those before, then the first of the best
     conditioned. One that loses a digit counts as if it had lost one solution in a hundred. Of two that are
     `opposite` places apart (0: none are) one is kept, as the other is no better where it fails."""
@@ -204,7 +204,7 @@ def ranking(hits: Matrix, rough: Matrix, opposite: int = 0) -> list[int]:
     return order
 
 
-def _separate(shifts: Matrix) -> list[int]:
+def _separate(shifts: Array) -> list[int]:
     """The resultants to keep: the first of those whose roots rounding moves least, but for a digit."""
     order: list[int] = []
     for _ in range(_KEPT):
@@ -220,9 +220,9 @@ class _Probe:
     need be its candidates' errors have, on average. shifts (n_r,) in rad: how far rounding moves the
     roots of the resultants."""
 
-    hits: Matrix
-    rough: Matrix
-    shifts: Matrix
+    hits: Array
+    rough: Array
+    shifts: Array
 
 
 def _joined(parts: Sequence[_Probe]) -> _Probe:
@@ -234,7 +234,7 @@ def _joined(parts: Sequence[_Probe]) -> _Probe:
     return _Probe(hits, rough, shifts)
 
 
-def _probe(frames: Matrix, every: Sequence[Plan], count: int, rng: np.random.Generator) -> _Probe:
+def _probe(frames: Array, every: Sequence[Plan], count: int, rng: np.random.Generator) -> _Probe:
     length, turning = every[0].length, every[0].turning
     q = _configurations(frames, turning, count, rng)
     if not len(q):  # singular everywhere: two axes on one line, or four that keep parallel
@@ -251,14 +251,14 @@ def _probe(frames: Matrix, every: Sequence[Plan], count: int, rng: np.random.Gen
     return _Probe(hits, rough, np.quantile(shifts, 0.75, axis=1))
 
 
-def digits_lost(errors: Matrix) -> float:
+def digits_lost(errors: Array) -> float:
     """How many digits more than need be the errors (n,) have, on average; all where there are none."""
     return (
         float(np.maximum(np.log10(errors + 1e-16) - _FINE, 0.0).mean()) if len(errors) else -_FINE
     )
 
 
-def distinct_of_runs(runs: list[Matrix], turning: Turning) -> Matrix:
+def distinct_of_runs(runs: list[Array], turning: Turning) -> Array:
     """Which of the runs' rows (k, 6) has which of all distinct rows: (24, n) bool. Joint values are
     compared modulo turns."""
     union = np.concatenate(runs)
@@ -270,9 +270,7 @@ def distinct_of_runs(runs: list[Matrix], turning: Turning) -> Matrix:
     return np.array([part.any(axis=1) for part in np.split(same[fresh], ends, axis=1)])
 
 
-def _configurations(
-    frames: Matrix, turning: Turning, count: int, rng: np.random.Generator
-) -> Matrix:
+def _configurations(frames: Array, turning: Turning, count: int, rng: np.random.Generator) -> Array:
     """`half_hard` of many; slides are drawn within the typical length."""
     reach = np.where(turning, np.pi, typical_length(frames, turning))
     drawn = rng.uniform(-reach, reach, (12 * count, 6))
@@ -280,7 +278,7 @@ def _configurations(
     return half_hard(drawn, np.asarray(size), count)
 
 
-def half_hard(drawn: Matrix, size: Matrix, count: int) -> Matrix:
+def half_hard(drawn: Array, size: Array, count: int) -> Array:
     """Of configurations (n, 6) with these smallest singular values (n,), `count` regular ones: half of them
     the first, half the nearest to singular ones."""
     regular = np.flatnonzero(size > _REGULAR)

@@ -13,7 +13,7 @@ from itertools import product
 
 import numpy as np
 
-from ikgen.model.joint_tree import Matrix
+from ikgen.model.arrays import Array
 from ikgen.runtime.python.elimination.hidden_angle import loop_pencil
 from ikgen.runtime.python.elimination.loop_equations import loop_constants, loop_equations
 
@@ -34,7 +34,7 @@ _ROUNDING = 5e-13
 every processor, and choices would be with it."""
 
 
-def root_shifts(frames: Matrix, poses: Matrix, q: Matrix) -> Matrix:
+def root_shifts(frames: Array, poses: Array, q: Array) -> Array:
     """How far rounding may move the hidden angle of a known solution, (12, N) in rad, at most 1.
 
     frames (7, 4, 4) and poses (N, 4, 4) with lengths over the arm's; q (N, 6) in rad reaches them.
@@ -43,7 +43,7 @@ def root_shifts(frames: Matrix, poses: Matrix, q: Matrix) -> Matrix:
     return np.array([_shifts(frames, poses, q, plan) for plan in RESULTANTS])
 
 
-def _shifts(frames: Matrix, poses: Matrix, q: Matrix, plan: Resultant) -> Matrix:
+def _shifts(frames: Array, poses: Array, q: Array, plan: Resultant) -> Array:
     order, pencil = _pencil(frames, poses, plan)
     nodes = np.linspace(_FIRST, _FIRST + 2.0 * np.pi, _NODES, endpoint=False)
     spectrum = np.fft.fft(_resultant(pencil, nodes), axis=1) / _NODES
@@ -56,7 +56,7 @@ def _shifts(frames: Matrix, poses: Matrix, q: Matrix, plan: Resultant) -> Matrix
     return np.asarray(np.minimum(noise / np.maximum(np.abs(slope), 1e-300), 1.0), dtype=np.float64)
 
 
-def _pencil(frames: Matrix, poses: Matrix, plan: Resultant) -> tuple[list[int], Matrix]:
+def _pencil(frames: Array, poses: Array, plan: Resultant) -> tuple[list[int], Array]:
     """The order of the loop's joints, and the equations (3, N, 6, 9) in (1, c4, s4) x (1, c5, s5),
     their terms in 1, cos and sin of the hidden angle."""
     order, C = loop_constants([*frames[:, None]], poses, *plan)
@@ -64,7 +64,7 @@ def _pencil(frames: Matrix, poses: Matrix, plan: Resultant) -> tuple[list[int], 
     return order, np.array(loop_pencil(E, left))
 
 
-def _resultant(pencil: Matrix, angles: Matrix) -> Matrix:
+def _resultant(pencil: Array, angles: Array) -> Array:
     """f (N, n) of the pencil (3, N, 6, 9) at the angles (n,): det(A A^T) times the determinant of
     half angles of an orthonormal basis of A's null space."""
     terms = np.array([np.ones_like(angles), np.cos(angles), np.sin(angles)])

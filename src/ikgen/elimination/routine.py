@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ikgen.elimination.loop_frames import over
-from ikgen.model.joint_tree import Matrix
+from ikgen.model.arrays import Array
 from ikgen.program.policy import SolvePolicy
 from ikgen.runtime.python.arm.solve_policy import Policy
 from ikgen.runtime.python.elimination.general_6r import (
@@ -38,7 +38,7 @@ def runtime_policy(given: SolvePolicy) -> Policy:
     return Policy(**{name: getattr(given, name) for name in names}, refinement=stages)
 
 
-def six_joints_batch(frames: Matrix, plan: Plan, poses: Matrix) -> list[Matrix]:
+def six_joints_batch(frames: Array, plan: Plan, poses: Array) -> list[Array]:
     """All joint values (k, 6), angles in (-pi, pi], that reach each of the poses (N, 4, 4).
 
     frames (7, 4, 4): the chain as in `loop_frames.py`.
@@ -48,14 +48,14 @@ def six_joints_batch(frames: Matrix, plan: Plan, poses: Matrix) -> list[Matrix]:
     return _by_pose(rows, pose, len(poses))
 
 
-def _by_pose(rows: Matrix, pose: NDArray[np.intp], count: int) -> list[Matrix]:
+def _by_pose(rows: Array, pose: NDArray[np.intp], count: int) -> list[Array]:
     """Rows (k, 6) of poses (k,) in order, those of each."""
     return np.split(rows, np.searchsorted(pose, np.arange(1, count))) if count else []
 
 
 def initial_residuals(
-    frames: Matrix, plans: Sequence[Plan], poses: Matrix
-) -> list[tuple[list[Matrix], Matrix]]:
+    frames: Array, plans: Sequence[Plan], poses: Array
+) -> list[tuple[list[Array], Array]]:
     """Of each plan the first elimination's solutions for poses (N, 4, 4), lengths over the plan's, and the
     pose errors (m,) of those candidates that became solutions, before Newton's method: how well conditioned
     the elimination is. The plans are of one arm: all their candidates are refined together."""

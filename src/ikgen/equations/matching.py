@@ -6,6 +6,8 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import TypeAlias
 
+import numpy as np
+
 from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.algebra.polynomial import ONE, AngleCombination, Monomial, Polynomial
@@ -15,6 +17,7 @@ __all__ = [
     "AngleSplit",
     "constant_ratio",
     "contains",
+    "determinant_vanishes",
     "harmonics",
     "in_harmonics",
     "only_known",
@@ -137,3 +140,10 @@ def only_known(polynomial: Polynomial) -> Expr | None:
     if set(polynomial) == {ONE}:
         return polynomial[ONE]
     return None
+
+
+def determinant_vanishes(one: tuple[Expr, Expr], two: tuple[Expr, Expr]) -> bool:
+    """Whether two rows of two coefficients are proportional, at all probes."""
+    (a, b), (c, d) = one, two
+    size = a.scale * d.scale + b.scale * c.scale
+    return bool(np.max(np.abs(a.probe * d.probe - b.probe * c.probe)) <= 1e-9 * size)

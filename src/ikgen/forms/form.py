@@ -12,18 +12,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from typing import ClassVar
 
-import numpy as np
-from numpy.typing import NDArray
-
 from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.forms.formula import Formula, FormulaWriter, plain_formula
 from ikgen.forms.lowered_form import LoweredForm, LoweredRoutine, Tolerances
 from ikgen.formulas.mathtext import Math
+from ikgen.model.arrays import Array
 
 __all__ = ["Array", "Form", "scales"]
-
-Array = NDArray[np.float64]
 
 
 def scales(coefficients: Sequence[Expr]) -> list[float]:

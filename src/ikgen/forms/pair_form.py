@@ -10,11 +10,12 @@ import numpy as np
 
 from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
-from ikgen.forms.form import Array, Form
+from ikgen.forms.form import Form
 from ikgen.forms.formula import Formula, FormulaWriter, equals, linear_combination
 from ikgen.forms.lowered_form import ROUNDED, LoweredForm, Tolerances, divisor_of
 from ikgen.formulas import mathtext as m
 from ikgen.formulas.notation import quotient, show
+from ikgen.model.arrays import Array
 
 __all__ = ["LinearPair"]
 

@@ -11,12 +11,13 @@ from numpy.typing import NDArray
 
 from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
-from ikgen.forms.form import Array, Form
+from ikgen.forms.form import Form
 from ikgen.forms.formula import Formula, FormulaWriter, equals
 from ikgen.forms.lowered_form import ROUNDED, LoweredRoutine, Tolerances, leading
 from ikgen.formulas import mathtext as m
 from ikgen.formulas.mathtext import Math
 from ikgen.formulas.notation import angle, show
+from ikgen.model.arrays import Array
 
 __all__ = ["TrigQuartic"]
 

@@ -12,12 +12,13 @@ import numpy as np
 from ikgen.algebra.angle_sums import angle_sum
 from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
-from ikgen.forms.form import Array, Form
+from ikgen.forms.form import Form
 from ikgen.forms.formula import Formula, FormulaWriter, equals
 from ikgen.forms.lowered_form import LoweredRoutine, Tolerances, leading
 from ikgen.formulas import mathtext as m
 from ikgen.formulas.mathtext import Math
 from ikgen.formulas.notation import angle, show
+from ikgen.model.arrays import Array
 from ikgen.runtime.python.roots.trig_polynomial_roots import trig_polynomial_roots
 
 __all__ = ["CIRCLE", "TrigPolynomial", "most_roots"]

@@ -15,9 +15,9 @@ import numpy as np
 from ikgen.kinematics.fixed_order import product
 from ikgen.kinematics.forward import row_values
 from ikgen.kinematics.rigid import dh_link, z_motion
+from ikgen.model.arrays import Array
 from ikgen.model.chain import PRISMATIC
 from ikgen.model.dh import DHChain
-from ikgen.model.joint_tree import Matrix
 
 __all__ = ["AxisRelations", "axis_relations", "reach"]
 
@@ -65,10 +65,10 @@ def axis_relations(dh: DHChain) -> AxisRelations:
     return AxisRelations(frozenset(parallel), frozenset(meeting), frozenset(concurrent))
 
 
-def _lines(dh: DHChain) -> tuple[Matrix, Matrix]:
+def _lines(dh: DHChain) -> tuple[Array, Array]:
     """Direction and a point of each row's axis (samples, n, 3), at random configurations."""
     values = row_values(dh, np.random.default_rng(0).uniform(-1.5, 1.5, (_SAMPLES, dh.dof)))
-    T: Matrix = np.eye(4)
+    T: Array = np.eye(4)
     directions, points = [], []
     for i, row in enumerate(dh.rows):
         T = product(T, dh_link(row.alpha.nominal, row.a.nominal, row.theta.nominal, row.d.nominal))
@@ -78,7 +78,7 @@ def _lines(dh: DHChain) -> tuple[Matrix, Matrix]:
     return np.stack(directions, axis=1), np.stack(points, axis=1)
 
 
-def _through_one_point(z: Matrix, origin: Matrix, axes: tuple[int, int, int], small: float) -> bool:
+def _through_one_point(z: Array, origin: Array, axes: tuple[int, int, int], small: float) -> bool:
     """Whether the point nearest to three lines is on all of them, at every sample."""
     columns = list(axes)
     across = np.eye(3) - z[:, columns, :, None] * z[:, columns, None, :]

@@ -9,8 +9,8 @@ import numpy as np
 
 from ikgen.kinematics.file_frames import random_configurations
 from ikgen.kinematics.forward import file_jacobian
+from ikgen.model.arrays import Array
 from ikgen.model.dh import DHChain
-from ikgen.model.joint_tree import Matrix
 
 __all__ = ["column_blocks"]
 
@@ -49,14 +49,14 @@ def _order(last: Sequence[int]) -> list[int]:
     return [*(i for i in range(6) if i not in last), *last]
 
 
-def _pivot(V: Matrix) -> Matrix:
+def _pivot(V: Array) -> Array:
     """How far a column of a block (n, 6, 6) is at least from the span of its others (n,)."""
     last, far = _inverse(V[:, 3:, 3:])
     _, near = _inverse(V[:, :3, :3] - V[:, :3, 3:] @ last @ V[:, 3:, :3])
     return np.asarray(np.nan_to_num(1.0 / np.maximum(far, near)))
 
 
-def _inverse(A: Matrix) -> tuple[Matrix, Matrix]:
+def _inverse(A: Array) -> tuple[Array, Array]:
     """Inverses of A (n, 3, 3) by cofactors, and the largest length of a row of each (n,)."""
     a, b, c = A[:, :, 0], A[:, :, 1], A[:, :, 2]
     rows = np.stack([np.cross(b, c), np.cross(c, a), np.cross(a, b)], axis=1)

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ikgen.kinematics.fixed_order import length
 from ikgen.kinematics.rigid import inverse, rotation_about
+from ikgen.model.arrays import Array
 
 __all__ = ["displacements"]
 
-Array = NDArray[np.float64]
 
 _DIRECTIONS = (
     (0.31, -0.52, 0.17, 0.44, 0.61, -0.23),

@@ -19,9 +19,9 @@ from ikgen.kinematics.classify import parallel_to_previous
 from ikgen.kinematics.fixed_order import length, product
 from ikgen.kinematics.forward import row_constant
 from ikgen.kinematics.rigid import dh_link, inverse, z_motion
+from ikgen.model.arrays import Array
 from ikgen.model.chain import REVOLUTE
 from ikgen.model.dh import ARM_ANGLE_OPTION, DHChain, DHRow, Length
-from ikgen.model.joint_tree import Matrix
 
 __all__ = ["ElbowGeometry", "elbow_geometry", "without_arm_angle"]
 
@@ -34,9 +34,9 @@ class ElbowGeometry:
     `wrist` (3,): W in the tip link; `elbow`: four frames F of `F_0 M_1 F_1 M_2 F_2 M_3 F_3` from the base
     link to a frame at E, M of the first three rows; `upper`, `fore`: E-S and W-E (m)."""
 
-    shoulder: Matrix
-    wrist: Matrix
-    elbow: tuple[Matrix, ...]
+    shoulder: Array
+    wrist: Array
+    elbow: tuple[Array, ...]
     upper: float
     fore: float
 
@@ -88,12 +88,12 @@ def _geometry(dh: DHChain) -> ElbowGeometry:
     return ElbowGeometry(shoulder, wrist, elbow, length(upper), length(fore))
 
 
-def _link(row: DHRow) -> Matrix:
+def _link(row: DHRow) -> Array:
     """`Rx(alpha) Tx(a)`"""
     return dh_link(row.alpha.value, row.a.value, 0.0, 0.0)
 
 
-def _along(d: float) -> Matrix:
+def _along(d: float) -> Array:
     return np.asarray(z_motion(False, d))
 
 

@@ -15,8 +15,8 @@ from ikgen.kinematics.file_frames import frames_beside, largest_deviation
 from ikgen.kinematics.forward import pose_difference
 from ikgen.kinematics.row_ends import tidy_pose
 from ikgen.kinematics.snapping import SnapLog, snap_rotation
+from ikgen.model.arrays import Array
 from ikgen.model.dh import DHChain
-from ikgen.model.joint_tree import Matrix
 
 __all__ = ["with_exact_ends"]
 
@@ -38,7 +38,7 @@ def with_exact_ends(dh: DHChain, *, length_tolerance: float = 1e-5) -> DHChain:
     return replace(exact, deviation=largest_deviation(exact))
 
 
-def _exact(X: Matrix, name: str, near: float, log: SnapLog) -> Matrix:
+def _exact(X: Array, name: str, near: float, log: SnapLog) -> Array:
     """One end's transform (4, 4)."""
     out = np.array(X)
     out[:3, :3] = snap_rotation(X[:3, :3], _ANGLE, _ANGLE)

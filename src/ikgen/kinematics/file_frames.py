@@ -9,9 +9,9 @@ import numpy as np
 from ikgen.kinematics.fixed_order import dot, length, product
 from ikgen.kinematics.forward import dh_forward, file_forward, pose_difference, row_constant
 from ikgen.kinematics.rigid import axis_motion, inverse, read_only, z_motion
+from ikgen.model.arrays import Array
 from ikgen.model.chain import REVOLUTE, Chain
 from ikgen.model.dh import DHChain, DHRow
-from ikgen.model.joint_tree import Matrix
 
 __all__ = [
     "file_frames", "frames_beside", "frames_of_chain", "largest_deviation", "random_configurations",
@@ -30,8 +30,8 @@ def file_frames(
     rows: tuple[DHRow, ...],
     signs: tuple[int, ...],
     offsets: tuple[float, ...],
-    ends: tuple[Matrix, Matrix],
-) -> tuple[Matrix, ...]:
+    ends: tuple[Array, Array],
+) -> tuple[Array, ...]:
     """The n + 1 constants F_i (4, 4) of `T = F_0 M_1(v_1) F_1 ... M_n(v_n) F_n`, as in the file.
 
     With every axis at 0, B_i is the frame on the file's axis i nearest to DH frame i (`offsets`
@@ -47,7 +47,7 @@ def file_frames(
     return _frames(axes, product(T, chain.T_last_tip), rows, offsets, ends)
 
 
-def frames_of_chain(chain: Chain, dh: DHChain) -> tuple[Matrix, ...]:
+def frames_of_chain(chain: Chain, dh: DHChain) -> tuple[Array, ...]:
     """The constants of another chain with the joints of `dh`, written with the variables of its rows."""
     axes, T = [], np.eye(4)
     for axis, row in zip(chain.axes, dh.rows, strict=True):
@@ -59,8 +59,8 @@ def frames_of_chain(chain: Chain, dh: DHChain) -> tuple[Matrix, ...]:
 
 
 def frames_beside(
-    dh: DHChain, rows: tuple[DHRow, ...], ends: tuple[Matrix, Matrix]
-) -> tuple[Matrix, ...]:
+    dh: DHChain, rows: tuple[DHRow, ...], ends: tuple[Array, Array]
+) -> tuple[Array, ...]:
     """The constants of the file's chain of `dh`, written with the variables of other `rows`."""
     axes, T, z = [], np.eye(4), np.array([0.0, 0.0, 1.0])
     for F, row in zip(dh.file_frames, dh.rows, strict=False):
@@ -72,16 +72,16 @@ def frames_beside(
 
 
 def _frames(
-    axes: list[tuple[Matrix, Matrix]],
-    T_home: Matrix,
+    axes: list[tuple[Array, Array]],
+    T_home: Array,
     rows: tuple[DHRow, ...],
     offsets: tuple[float, ...],
-    ends: tuple[Matrix, Matrix],
-) -> tuple[Matrix, ...]:
+    ends: tuple[Array, Array],
+) -> tuple[Array, ...]:
     """The constants between the `axes` (frame and direction in it), the tip being at `T_home`."""
     X_base, X_tip = ends
     nominal = [X_base, *(row_constant(row) for row in rows[1:]), X_tip]
-    F: list[Matrix] = []
+    F: list[Array] = []
     pending, T_dh = np.eye(4), X_base
     places = np.array([*(frame[:3, 3] for frame, _ in axes), T_home[:3, 3]])
     far = _FAR * float(np.linalg.norm(np.diff(places, axis=0), axis=1).sum())
@@ -97,9 +97,7 @@ def _frames(
     return tuple(read_only(_clean(f, exact)) for f, exact in zip(F, nominal, strict=True))
 
 
-def _nearest_frame(
-    T_dh: Matrix, T_axis: Matrix, axis: Matrix, revolute: bool, far: float
-) -> Matrix:
+def _nearest_frame(T_dh: Array, T_axis: Array, axis: Array, revolute: bool, far: float) -> Array:
     """The frame with z exactly along the file's axis, otherwise as near to `T_dh` as it can be, unless that
     is farther than `far` (m) along the axis."""
     z = product(T_axis[:3, :3], axis)
@@ -125,7 +123,7 @@ def largest_deviation(dh: DHChain) -> tuple[float, float]:
 
 def random_configurations(
     dh: DHChain, count: int = _SAMPLES, seed: int = _SEED, travel: float = 1.0
-) -> Matrix:
+) -> Array:
     """Joint values (count, dof): revolute over a full turn, prismatic within limits and `travel` (m) to
     either side, ±1 m where they have none."""
     rng = np.random.default_rng(seed)
@@ -141,7 +139,7 @@ def random_configurations(
     return rng.uniform(low, high, (count, dh.dof))
 
 
-def _clean(F: Matrix, nominal: Matrix) -> Matrix:
+def _clean(F: Array, nominal: Array) -> Array:
     """The exact constant where `F` is that to round-off, else `F` without noise around 0 and ±1."""
     if float(np.max(np.abs(F - nominal))) < _SAME:
         return np.array(nominal)

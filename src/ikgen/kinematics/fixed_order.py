@@ -11,11 +11,12 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+
+from ikgen.model.arrays import Array
 
 __all__ = ["cosines", "dot", "least_squares", "length", "product", "sines"]
 
-Array = NDArray[np.float64]
 
 _MANY = 20
 """Matrices for which adding terms one by one is worth the calls."""

@@ -13,8 +13,8 @@ from numpy.typing import ArrayLike
 
 from ikgen.kinematics.fixed_order import product
 from ikgen.kinematics.rigid import dh_link, z_motion
+from ikgen.model.arrays import Array
 from ikgen.model.dh import DHChain, DHRow
-from ikgen.model.joint_tree import Matrix
 
 __all__ = [
     "dh_forward",
@@ -28,7 +28,7 @@ __all__ = [
 ]
 
 
-def dh_forward(dh: DHChain, q: ArrayLike) -> Matrix:
+def dh_forward(dh: DHChain, q: ArrayLike) -> Array:
     """`X_base A_1 ... A_n X_tip` of the exact DH rows."""
     values = row_values(dh, q)
     T = dh.X_base
@@ -37,12 +37,12 @@ def dh_forward(dh: DHChain, q: ArrayLike) -> Matrix:
     return np.asarray(product(T, dh.X_tip))
 
 
-def dh_frames(dh: DHChain) -> tuple[Matrix, ...]:
+def dh_frames(dh: DHChain) -> tuple[Array, ...]:
     """The n + 1 constants (4, 4) of the exact DH rows, as `file_frames` has those of the file's chain."""
     return (dh.X_base, *(row_constant(row) for row in dh.rows[1:]), dh.X_tip)
 
 
-def file_forward(dh: DHChain, q: ArrayLike) -> Matrix:
+def file_forward(dh: DHChain, q: ArrayLike) -> Array:
     """`F_0 M_1 F_1 ... M_n F_n`: the file's own pose, from the DH variables."""
     values = row_values(dh, q)
     T = dh.file_frames[0]
@@ -51,7 +51,7 @@ def file_forward(dh: DHChain, q: ArrayLike) -> Matrix:
     return np.asarray(T)
 
 
-def file_jacobian(dh: DHChain, q: ArrayLike) -> Matrix:
+def file_jacobian(dh: DHChain, q: ArrayLike) -> Array:
     """Geometric Jacobian (..., 6, dof) of the file's chain at the tip's origin, in the base frame.
 
     Rows are linear (m/rad or m/m), then angular velocity (rad/rad), the order of Pinocchio.
@@ -72,7 +72,7 @@ def file_jacobian(dh: DHChain, q: ArrayLike) -> Matrix:
     return J
 
 
-def file_slopes(dh: DHChain, q: ArrayLike) -> Matrix:
+def file_slopes(dh: DHChain, q: ArrayLike) -> Array:
     """How the entries of the file's pose change with the joints: (..., 3, 4, dof), per rad and m."""
     T, J = file_forward(dh, q), file_jacobian(dh, q)
     slopes = np.empty((*T.shape[:-2], 3, 4, dh.dof))
@@ -81,7 +81,7 @@ def file_slopes(dh: DHChain, q: ArrayLike) -> Matrix:
     return slopes
 
 
-def row_values(dh: DHChain, q: ArrayLike) -> Matrix:
+def row_values(dh: DHChain, q: ArrayLike) -> Array:
     """The DH variables (..., n), offsets included, at joint values `q` (..., dof)."""
     values = np.asarray(q, dtype=np.float64)
     scale = np.array([row.scale for row in dh.rows])
@@ -89,12 +89,12 @@ def row_values(dh: DHChain, q: ArrayLike) -> Matrix:
     return np.asarray(scale * values[..., [row.driver for row in dh.rows]] + offset)
 
 
-def row_constant(row: DHRow) -> Matrix:
+def row_constant(row: DHRow) -> Array:
     """`Rx(alpha) Tx(a) Rz(theta) Tz(d)` (4, 4) with the row's variable at 0."""
     return dh_link(row.alpha.value, row.a.value, row.theta.value, row.d.value)
 
 
-def pose_difference(T_one: Matrix, T_other: Matrix) -> tuple[float, float]:
+def pose_difference(T_one: Array, T_other: Array) -> tuple[float, float]:
     """Largest distance (m) and angle (rad) between poses (..., 4, 4); small angles stay exact."""
     distance = np.linalg.norm(T_one[..., :3, 3] - T_other[..., :3, 3], axis=-1)
     chord = np.linalg.norm(T_one[..., :3, :3] - T_other[..., :3, :3], axis=(-2, -1))

@@ -22,8 +22,8 @@ from ikgen.kinematics.snapping import (
     snap_rotation,
     wrap_angle,
 )
+from ikgen.model.arrays import Array
 from ikgen.model.chain import Chain
-from ikgen.model.joint_tree import Matrix
 
 __all__ = [
     "FLIP",
@@ -56,8 +56,8 @@ class Link:
     m, `change` (rad) how far R was turned, `length_error` (m) what that may have done to lengths.
     """
 
-    R: Matrix
-    p: Matrix
+    R: Array
+    p: Array
     true_alpha: float
     change: float
     length_error: float
@@ -92,7 +92,7 @@ class LinkShape:
         return self.alpha == 0.0 and self.a == 0.0
 
 
-def align_z(axis: Matrix) -> Matrix:
+def align_z(axis: Array) -> Array:
     """A rotation (3, 3) whose z column is the unit vector `axis`; exact for coordinate axes."""
     k = int(np.argmax(np.abs(axis)))
     sign = math.copysign(1.0, axis[k])

@@ -8,9 +8,9 @@ import numpy as np
 
 from ikgen.errors import UnknownNameError, UsageError
 from ikgen.kinematics.rigid import read_only
+from ikgen.model.arrays import Array
 from ikgen.model.dh import DHChain
 from ikgen.model.joint_relation import Relation
-from ikgen.model.joint_tree import Matrix
 from ikgen.model.transmission import Transmission
 
 __all__ = ["motor_matrix"]
@@ -57,7 +57,7 @@ def _check(dh: DHChain, names: list[str], name: str) -> None:
 
 
 def _check_motors(
-    names: list[str], matrix: Matrix, offset: Matrix, relations: Mapping[str, Relation]
+    names: list[str], matrix: Array, offset: Array, relations: Mapping[str, Relation]
 ) -> None:
     if not offset.any() and np.array_equal(matrix, np.eye(len(names))):
         raise UsageError(

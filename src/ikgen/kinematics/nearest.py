@@ -17,8 +17,8 @@ from ikgen.kinematics.fixed_order import dot, least_squares, length, product
 from ikgen.kinematics.forward import file_forward, row_values
 from ikgen.kinematics.rigid import coordinate_motion, inverse
 from ikgen.kinematics.row_ends import tidy_pose
+from ikgen.model.arrays import Array
 from ikgen.model.dh import DHChain
-from ikgen.model.joint_tree import Matrix
 
 __all__ = ["FIELDS", "Constant", "Fitted", "end_motions", "fit_rows"]
 
@@ -43,8 +43,8 @@ class Fitted:
     end constants (4, 4) that go with them."""
 
     change: dict[Constant, float]
-    X_base: Matrix
-    X_tip: Matrix
+    X_base: Array
+    X_tip: Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +52,7 @@ class _Factor:
     """One motion of the chain along or about an axis, by `value` (m or rad, of all samples)."""
 
     motion: str
-    value: Matrix
+    value: Array
     label: Constant
 
 
@@ -88,7 +88,7 @@ def fit_rows(dh: DHChain, constants: tuple[Constant, ...]) -> Fitted:
     return Fitted(change, tidy_pose(X_base), tidy_pose(X_tip))
 
 
-def _factors(dh: DHChain, values: Matrix, change: dict[Constant, float]) -> list[_Factor]:
+def _factors(dh: DHChain, values: Array, change: dict[Constant, float]) -> list[_Factor]:
     out = []
     for i, row in enumerate(dh.rows):
         turn, slide = np.full(len(values), row.theta.value), np.full(len(values), row.d.value)
@@ -104,8 +104,8 @@ def _factors(dh: DHChain, values: Matrix, change: dict[Constant, float]) -> list
 
 
 def _derivatives(
-    factors: list[_Factor], labels: tuple[Constant, ...], X_base: Matrix, X_tip: Matrix
-) -> tuple[Matrix, Matrix]:
+    factors: list[_Factor], labels: tuple[Constant, ...], X_base: Array, X_tip: Array
+) -> tuple[Array, Array]:
     """The poses (N, 4, 4) and their derivatives by `labels`, each (N, 4, 4)."""
     before = [np.broadcast_to(X_base, (len(factors[0].value), 4, 4))]
     for factor in factors:
@@ -123,9 +123,9 @@ def _derivatives(
     return T, np.stack(columns)
 
 
-def _independent(J: Matrix) -> list[int]:
+def _independent(J: Array) -> list[int]:
     """Columns that the ones before do not span, by Gram and Schmidt's method."""
-    basis: list[Matrix] = []
+    basis: list[Array] = []
     chosen = []
     for k, column in enumerate(J.T):
         rest = column
@@ -139,19 +139,19 @@ def _independent(J: Matrix) -> list[int]:
     return chosen
 
 
-def _end_motion(step: dict[Constant, float], end: int) -> Matrix:
+def _end_motion(step: dict[Constant, float], end: int) -> Array:
     T = np.eye(4)
     for m in _ENDS:
         T = product(T, _motion(m, step.get((end, m), 0.0)))
     return T
 
 
-def _motion(motion: str, value: ArrayLike) -> Matrix:
+def _motion(motion: str, value: ArrayLike) -> Array:
     """The motions (..., 4, 4) by values (...,) of "Rx" to "Tz"."""
     return coordinate_motion(motion[0] == "R", "xyz".index(motion[1]), value)
 
 
-def _generator(motion: str) -> Matrix:
+def _generator(motion: str) -> Array:
     axis = "xyz".index(motion[1])
     G = np.zeros((4, 4))
     if motion[0] == "T":

@@ -15,11 +15,11 @@ import numpy as np
 from ikgen.kinematics.fixed_order import dot, product
 from ikgen.kinematics.links import Link, Tolerance, orient
 from ikgen.kinematics.offsets import distribute
-from ikgen.model.joint_tree import Matrix
+from ikgen.model.arrays import Array
 
 __all__ = ["place_prismatic"]
 
-_Placement = tuple[tuple[Link, ...], tuple[Matrix, ...]]
+_Placement = tuple[tuple[Link, ...], tuple[Array, ...]]
 
 _WIDTH = 12
 """Placements kept at each step of the search; lines of neighbours depend on each other."""
@@ -29,7 +29,7 @@ _ACROSS = np.array([1.0, 1.0, 0.0])
 
 def place_prismatic(
     links: tuple[Link, ...], prismatic: tuple[bool, ...], tolerance: Tolerance
-) -> tuple[tuple[Link, ...], tuple[Matrix, ...]]:
+) -> tuple[tuple[Link, ...], tuple[Array, ...]]:
     """The links with prismatic lines moved, and each axis' shift (3,) in m in its own frame."""
     still = tuple(np.zeros(3) for _ in prismatic)
     sliding = [k for k, slides in enumerate(prismatic) if slides]
@@ -72,7 +72,7 @@ def _cost(
     return lengths, shifts, turns
 
 
-def _shifted(links: tuple[Link, ...], k: int, c: Matrix) -> tuple[Link, ...]:
+def _shifted(links: tuple[Link, ...], k: int, c: Array) -> tuple[Link, ...]:
     """`links` with the line of axis k moved by c (3,), given in the frame of axis k."""
     moved = list(links)
     around = [link.length_error for link in links[max(0, k - 1) : k + 1]]
@@ -86,7 +86,7 @@ def _shifted(links: tuple[Link, ...], k: int, c: Matrix) -> tuple[Link, ...]:
     return tuple(moved)
 
 
-def _candidates(links: tuple[Link, ...], k: int) -> Iterator[Matrix]:
+def _candidates(links: tuple[Link, ...], k: int) -> Iterator[Array]:
     """Shifts of axis k in its frame: through the next or previous origin, both axes, or none."""
     frames = [(np.eye(3), np.zeros(3))]
     for link in links:
@@ -105,7 +105,7 @@ def _candidates(links: tuple[Link, ...], k: int) -> Iterator[Matrix]:
     yield np.zeros(3)
 
 
-def _origin(frames: list[tuple[Matrix, Matrix]], k: int, step: int) -> Matrix:
+def _origin(frames: list[tuple[Array, Array]], k: int, step: int) -> Array:
     """Point of axis k level with the common normal at the `step` end of its run of parallels."""
     z, o = frames[k][0][:, 2], frames[k][1]
     j = k

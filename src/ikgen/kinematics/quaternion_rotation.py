@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from ikgen.model.joint_tree import Matrix
+from ikgen.model.arrays import Array
 
 __all__ = ["quaternion", "rotation"]
 
 
-def quaternion(R: Matrix) -> Matrix:
+def quaternion(R: Array) -> Array:
     """w, x, y, z (4,) with w >= 0 of a rotation (3, 3): the eigenvector of the largest eigenvalue of
     Bar-Itzhack's matrix (New method for extracting the quaternion from a rotation matrix, 2000)."""
     (a, b, c), (d, e, f), (g, h, i) = R.tolist()
@@ -23,7 +23,7 @@ def quaternion(R: Matrix) -> Matrix:
     return np.asarray(-found if found[0] < 0 else found)
 
 
-def rotation(q: Matrix) -> Matrix:
+def rotation(q: Array) -> Array:
     """The rotation (3, 3) of a quaternion w, x, y, z (4,), which need not be of length 1."""
     w, x, y, z = (q / np.linalg.norm(q)).tolist()
     return np.array([

@@ -16,8 +16,8 @@ from ikgen.kinematics.links import FLIP, Tolerance, align_z
 from ikgen.kinematics.offsets import Offsets
 from ikgen.kinematics.rigid import inverse, rotation_z
 from ikgen.kinematics.snapping import snap_angle, wrap_angle
+from ikgen.model.arrays import Array
 from ikgen.model.chain import Chain
-from ikgen.model.joint_tree import Matrix
 
 __all__ = ["base_points_down", "end_transforms", "tidy_pose"]
 
@@ -31,10 +31,10 @@ def base_points_down(chain: Chain, tolerance: Tolerance) -> bool:
 def end_transforms(
     chain: Chain,
     signs: tuple[int, ...],
-    shifts: tuple[Matrix, ...],
+    shifts: tuple[Array, ...],
     offsets: Offsets,
     tolerance: Tolerance,
-) -> tuple[Matrix, Matrix, tuple[float, ...]]:
+) -> tuple[Array, Array, tuple[float, ...]]:
     """`X_base`, `X_tip` (4, 4) and the rows' thetas (rad) with the ends' turns settled."""
     base = product(chain.axes[0].T_prev_axis, _axis_frame(chain, 0, signs, shifts))
     tip = product(inverse(_axis_frame(chain, -1, signs, shifts)), chain.T_last_tip)
@@ -51,7 +51,7 @@ def end_transforms(
     return tidy_pose(X_base), tidy_pose(X_tip), tuple(theta)
 
 
-def _turn(R: Matrix, theta: float, prismatic: bool, tolerance: Tolerance) -> float:
+def _turn(R: Array, theta: float, prismatic: bool, tolerance: Tolerance) -> float:
     """Angle about z (rad) that makes `R Rz(angle)` simple, then `theta - angle` small.
 
     `R` (3, 3) has the axis as its z column, seen from the end's own frame.
@@ -69,7 +69,7 @@ def _turn(R: Matrix, theta: float, prismatic: bool, tolerance: Tolerance) -> flo
     return min(turns, key=lambda turn: (round(abs(wrap_angle(theta - turn)), 6), abs(turn)))
 
 
-def _axis_frame(chain: Chain, k: int, signs: tuple[int, ...], shifts: tuple[Matrix, ...]) -> Matrix:
+def _axis_frame(chain: Chain, k: int, signs: tuple[int, ...], shifts: tuple[Array, ...]) -> Array:
     """Frame (4, 4) with z along axis k as the rows direct it, in the axis' joint frame."""
     T = np.eye(4)
     R = align_z(chain.axes[k].axis)
@@ -78,14 +78,14 @@ def _axis_frame(chain: Chain, k: int, signs: tuple[int, ...], shifts: tuple[Matr
     return T
 
 
-def _screw(angle: float, lift: float) -> Matrix:
+def _screw(angle: float, lift: float) -> Array:
     T = np.eye(4)
     T[:3, :3] = rotation_z(angle)
     T[2, 3] = lift
     return T
 
 
-def tidy_pose(T: Matrix) -> Matrix:
+def tidy_pose(T: Array) -> Array:
     """`T` without round-off around 0 and ±1."""
     whole = np.round(T)
     near = (np.abs(T - whole) < 2e-15) & (np.abs(whole) <= 1.0)

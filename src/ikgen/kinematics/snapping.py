@@ -14,8 +14,8 @@ import numpy as np
 
 from ikgen.kinematics.fixed_order import length, product
 from ikgen.kinematics.rigid import rotation_x, rotation_z
+from ikgen.model.arrays import Array
 from ikgen.model.dh import Angle, Length, Snap
-from ikgen.model.joint_tree import Matrix
 
 __all__ = [
     "ANGLE_STEP",
@@ -71,7 +71,7 @@ def tidy(length: float) -> float:
     return length
 
 
-def snap_axis(axis: Matrix, tolerance: float) -> Matrix:
+def snap_axis(axis: Array, tolerance: float) -> Array:
     """The signed coordinate axis (3,) within `tolerance` (rad) of unit vector `axis`, or `axis`."""
     k = int(np.argmax(np.abs(axis)))
     rest = length(np.delete(axis, k))
@@ -82,7 +82,7 @@ def snap_axis(axis: Matrix, tolerance: float) -> Matrix:
     return snapped
 
 
-def snap_rotation(R: Matrix, tolerance: float, turn_tolerance: float) -> Matrix:
+def snap_rotation(R: Array, tolerance: float, turn_tolerance: float) -> Array:
     """The rotation next to `R` (3, 3) whose Euler angles z-x-z are exact where they nearly are.
 
     With z along an axis on both sides, `R = Rz(phi) Rx(alpha) Rz(psi)` holds the Denavit-Hartenberg

@@ -14,8 +14,8 @@ import numpy as np
 
 from ikgen.kinematics.fixed_order import product
 from ikgen.kinematics.rigid import rotation_x, rotation_z
+from ikgen.model.arrays import Array
 from ikgen.model.dh import DHChain
-from ikgen.model.joint_tree import Matrix
 
 __all__ = ["TwistChain", "TwistLink", "twist_chain"]
 
@@ -44,9 +44,9 @@ class TwistLink:
 class TwistChain:
     """The pose of the tip is `first * links * last` with constant `first` and `last` (4, 4)."""
 
-    first: Matrix
+    first: Array
     links: tuple[TwistLink, ...]
-    last: Matrix
+    last: Array
 
 
 def twist_chain(dh: DHChain) -> TwistChain:
@@ -69,7 +69,7 @@ def twist_chain(dh: DHChain) -> TwistChain:
     return TwistChain(frames[0], tuple(links), frames[-1])
 
 
-def _without_heights(dh: DHChain) -> tuple[list[Matrix], list[float]]:
+def _without_heights(dh: DHChain) -> tuple[list[Array], list[float]]:
     """The frames without steps along z between two axes, and what a slide in front of one gains."""
     frames = [np.array(F) for F in dh.file_frames]
     heights = [0.0] * len(dh.rows)
@@ -83,7 +83,7 @@ def _without_heights(dh: DHChain) -> tuple[list[Matrix], list[float]]:
     return frames, heights
 
 
-def _euler(R: Matrix) -> tuple[float, float, float]:
+def _euler(R: Array) -> tuple[float, float, float]:
     """`R = Rz(before) Rx(twist) Rz(after)`: before, twist and after."""
     x, y, z = R[:, 2]
     sine = math.hypot(x, y)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ikgen.model.joint_tree import Limits, Matrix
+from ikgen.model.arrays import Array
+from ikgen.model.joint_tree import Limits
 
 __all__ = ["MOST_AXES", "PRISMATIC", "REVOLUTE", "ActuatedJoint", "Chain", "ChainAxis"]
 
@@ -37,8 +38,8 @@ class ChainAxis:
 
     name: str
     kind: str
-    T_prev_axis: Matrix
-    axis: Matrix
+    T_prev_axis: Array
+    axis: Array
     driver: int
     multiplier: float = 1.0
     offset: float = 0.0
@@ -57,7 +58,7 @@ class Chain:
     tip_link: str
     joints: tuple[ActuatedJoint, ...]
     axes: tuple[ChainAxis, ...]
-    T_last_tip: Matrix
+    T_last_tip: Array
     locked: tuple[tuple[str, float], ...] = ()
     file_axes: tuple[ChainAxis, ...] = ()
 

@@ -11,9 +11,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
+from ikgen.model.arrays import Array
 from ikgen.model.chain import REVOLUTE, ActuatedJoint
 from ikgen.model.gear_ratio import common_share, is_whole
-from ikgen.model.joint_tree import Limits, Matrix
+from ikgen.model.joint_tree import Limits
 from ikgen.model.transmission import Transmission
 
 __all__ = [
@@ -143,9 +144,9 @@ class DHChain:
     tip_link: str
     joints: tuple[ActuatedJoint, ...]
     rows: tuple[DHRow, ...]
-    X_base: Matrix
-    X_tip: Matrix
-    file_frames: tuple[Matrix, ...]
+    X_base: Array
+    X_tip: Array
+    file_frames: tuple[Array, ...]
     snaps: tuple[Snap, ...] = ()
     deviation: tuple[float, float] = (0.0, 0.0)
     free: tuple[str, ...] = ()
@@ -176,6 +177,11 @@ class DHChain:
     def free_indices(self) -> tuple[int, ...]:
         """Places among `joints` of those that are held."""
         return tuple(j for j, joint in enumerate(self.joints) if joint.name in self.free)
+
+    @property
+    def moving(self) -> int:
+        """How many joints move independently: what is held takes one each, the arm angle too."""
+        return self.dof - len(self.free)
 
     @property
     def held_inputs(self) -> tuple[ActuatedJoint, ...]:

@@ -6,14 +6,10 @@ from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
 
-import numpy as np
-from numpy.typing import NDArray
-
+from ikgen.model.arrays import Array
 from ikgen.model.joint_relation import Mimic
 
 __all__ = ["Joint", "JointTree", "JointType", "Limits", "Mimic", "Source"]
-
-Matrix = NDArray[np.float64]
 
 
 class JointType(Enum):
@@ -61,8 +57,8 @@ class Joint:
     type: JointType
     parent: str
     child: str
-    T_parent_child: Matrix
-    axis: Matrix
+    T_parent_child: Array
+    axis: Array
     limits: Limits
     mimic: Mimic | None = None
     line: int | None = None

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from ikgen.model.joint_tree import Matrix
+from ikgen.model.arrays import Array
 
 __all__ = ["Transmission"]
 
@@ -15,18 +15,18 @@ class Transmission:
     """`joints = matrix @ motors + offset`, and `motors = inverse @ (joints - offset)`: (dof, dof) and
     (dof,), rad or m. There is a motor a joint, called by the joint's name."""
 
-    matrix: Matrix
-    inverse: Matrix
-    offset: Matrix
+    matrix: Array
+    inverse: Array
+    offset: Array
 
-    def joints(self, motors: Matrix) -> Matrix:
+    def joints(self, motors: Array) -> Array:
         """Values (..., dof) of the joints at those of the motors."""
-        joints: Matrix = motors @ self.matrix.T + self.offset
+        joints: Array = motors @ self.matrix.T + self.offset
         return joints
 
-    def motors(self, joints: Matrix) -> Matrix:
+    def motors(self, joints: Array) -> Array:
         """Values (..., dof) of the motors at those of the joints."""
-        motors: Matrix = (joints - self.offset) @ self.inverse.T
+        motors: Array = (joints - self.offset) @ self.inverse.T
         return motors
 
     def words(self, names: Sequence[str]) -> tuple[str, ...]:

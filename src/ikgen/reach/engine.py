@@ -13,14 +13,13 @@ from numpy.typing import NDArray
 
 from ikgen.errors import VerificationError
 from ikgen.kinematics.forward import file_jacobian
+from ikgen.model.arrays import Array
 from ikgen.model.dh import DHChain
 from ikgen.processes.outside_program import run_program
 from ikgen.processes.scratch_folder import ScratchFolder
 from ikgen.verify.runners.python_module import PythonModule
 
 __all__ = ["Block", "Compiled", "Engine", "Interpreted", "MapRows", "solve_block"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

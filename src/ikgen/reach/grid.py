@@ -6,16 +6,15 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ikgen.errors import UsageError
 from ikgen.kinematics.forward import file_forward
 from ikgen.kinematics.joint_box import joint_box
+from ikgen.model.arrays import Array
 from ikgen.model.dh import DHChain
 
 __all__ = ["Grid", "grid_over", "orientations"]
 
-Array = NDArray[np.float64]
 
 _SAMPLES, _SEED = 20000, 3
 _MOST = 4 * 10**9

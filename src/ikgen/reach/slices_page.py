@@ -8,13 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ikgen.emit.rendering import render
+from ikgen.model.arrays import Array
 from ikgen.reach.grid import Grid
 from ikgen.reach.png_image import COLOURS, data_address, png
 from ikgen.reach.reach_map import ReachMap
 
 __all__ = ["slices_page"]
 
-Array = NDArray[np.float64]
 Marks = list[tuple[float, str]]
 """Numbers beside a bar of colours: where, percent of its length, and the text."""
 

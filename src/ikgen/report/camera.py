@@ -6,11 +6,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+
+from ikgen.model.arrays import Array
 
 __all__ = ["Camera", "hull", "look_at"]
 
-Array = NDArray[np.float64]
 
 _ELEVATION = math.radians(22)
 _AZIMUTHS = tuple(math.radians(15 * k + 5) for k in range(24))

@@ -8,12 +8,12 @@ from collections.abc import Mapping
 from ikgen.emit.derivation import Reading
 from ikgen.importers.named_robots import is_named
 from ikgen.kinematics.classify import GeometryClass
+from ikgen.model.arrays import Array
 from ikgen.model.chain import REVOLUTE, ActuatedJoint
 from ikgen.model.counted import counted
 from ikgen.report.document import Block, Card, Heading, Picture, Text
 from ikgen.report.skeleton import Style, skeleton_svg
 from ikgen.report.svg_latex import svg_latex
-from ikgen.report.worked_example import Array
 from ikgen.tasks import Task
 from ikgen.verify.verification_report import VerificationReport
 

@@ -7,6 +7,7 @@ import math
 from ikgen.formulas import mathtext as m
 from ikgen.formulas.mathtext import Math
 from ikgen.lowering.held_angle import held_values
+from ikgen.model.arrays import Array
 from ikgen.model.chain import REVOLUTE
 from ikgen.model.dh import DHChain
 from ikgen.report.document import (
@@ -21,7 +22,7 @@ from ikgen.report.document import (
 )
 from ikgen.report.skeleton import Style, skeleton_camera, skeleton_svg
 from ikgen.report.svg_latex import svg_latex
-from ikgen.report.worked_example import Array, WorkedExample
+from ikgen.report.worked_example import WorkedExample
 
 __all__ = ["example_section", "joint_text"]
 

@@ -9,10 +9,11 @@ import numpy as np
 
 from ikgen.emit.derivation import Derivation
 from ikgen.lowering.held_angle import held_values
+from ikgen.model.arrays import Array
 from ikgen.model.chain import REVOLUTE
 from ikgen.model.dh import ARM_ANGLE_OPTION, DHChain
 from ikgen.report.document import Block, Heading, Paragraph, Picture
-from ikgen.report.worked_example import Array, WorkedExample
+from ikgen.report.worked_example import WorkedExample
 from ikgen.verify.runners.python_module import PythonModule
 
 __all__ = ["held_section"]

@@ -17,8 +17,8 @@ from ikgen.formulas.normal_form import Symbol
 from ikgen.formulas.normalizer import Normalizer
 from ikgen.formulas.notation import show, symbol
 from ikgen.kinematics.kept import kept_constants
+from ikgen.model.arrays import Array
 from ikgen.model.dh import Angle, DHChain, DHRow, Length
-from ikgen.model.joint_tree import Matrix as Array
 from ikgen.model.joint_tree import Source
 from ikgen.report.document import Block, Formulas, Heading, Matrix, Paragraph, Rows, Text
 from ikgen.solver.solution_graph import SolutionGraph

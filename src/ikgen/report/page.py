@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from ikgen.emit.derivation import Derivation, Reading, Unsolved
 from ikgen.formulas.normalizer import Normalizer
 from ikgen.kinematics.classify import GeometryClass
+from ikgen.model.arrays import Array
 from ikgen.report.graph_picture import Drawing, draw
 from ikgen.report.solution_sets import Versions, versions_of
 from ikgen.report.worked_example import (
-    Array,
     WorkedExample,
     shown_configuration,
     solver_of,

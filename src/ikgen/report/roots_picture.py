@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 
 from ikgen.elimination.plan import EliminationPlan
 from ikgen.kinematics.forward import row_values
+from ikgen.model.arrays import Array
 from ikgen.model.dh import DHChain
 from ikgen.report.document import Block, Paragraph, Picture
-from ikgen.report.worked_example import Array, WorkedExample
+from ikgen.report.worked_example import WorkedExample
 from ikgen.runtime.python.elimination.hidden_angle import loop_resultant
 from ikgen.runtime.python.elimination.loop_equations import loop_constants, loop_equations
 from ikgen.tasks import AXES

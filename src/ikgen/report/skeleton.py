@@ -12,8 +12,9 @@ from dataclasses import dataclass
 from html import escape
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ikgen.model.arrays import Array
 from ikgen.model.dh import DHChain
 from ikgen.report.camera import Camera, hull, look_at
 from ikgen.report.skeleton_bones import Bone, JointMark, Skeleton, skeleton
@@ -21,7 +22,6 @@ from ikgen.report.skeleton_names import name_parts
 
 __all__ = ["Style", "skeleton_camera", "skeleton_svg"]
 
-Array = NDArray[np.float64]
 Layer = tuple[float, str]
 """A part of the drawing and how near to the eye it is."""
 

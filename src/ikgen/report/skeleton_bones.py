@@ -5,15 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ikgen.kinematics.forward import row_constant, row_values
 from ikgen.kinematics.rigid import dh_link, z_motion
+from ikgen.model.arrays import Array
 from ikgen.model.dh import DHChain, DHRow
 
 __all__ = ["Bone", "JointMark", "Skeleton", "skeleton"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

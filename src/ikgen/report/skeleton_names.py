@@ -6,15 +6,14 @@ import re
 from html import escape
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ikgen.formulas.mathtext import GREEK
+from ikgen.model.arrays import Array
 from ikgen.report.camera import Camera
 from ikgen.report.skeleton_bones import Bone, JointMark, Skeleton
 
 __all__ = ["name_parts"]
 
-Array = NDArray[np.float64]
 
 AXIS, LENGTH = "#8a99a8", "#2f6f4f"
 _RED, _BLUE = "#d2484a", "#3b78d8"

@@ -12,6 +12,7 @@ from ikgen.emit.python.python_emitter import emit_module
 from ikgen.kinematics.forward import dh_forward, file_jacobian
 from ikgen.kinematics.joint_box import joint_box
 from ikgen.lowering.held_angle import held_values
+from ikgen.model.arrays import Array
 from ikgen.model.dh import DHChain
 from ikgen.processes.scratch_folder import ScratchFolder
 from ikgen.report.skeleton_bones import skeleton
@@ -19,7 +20,6 @@ from ikgen.verify.runners.python_module import PythonModule
 
 __all__ = ["WorkedExample", "shown_configuration", "solver_of", "worked_example"]
 
-Array = NDArray[np.float64]
 
 _TRIED, _SEED, _WIDEST = 40, 7, 2.6
 """Configurations to choose from; half the range (rad, m) of a joint without limits."""

@@ -10,7 +10,8 @@ import numpy as np
 from ikgen.algebra.expression import Expr
 from ikgen.equations.equation import Equation
 from ikgen.equations.knowledge import Variable
-from ikgen.forms.form import Array, Form, scales
+from ikgen.forms.form import Form, scales
+from ikgen.model.arrays import Array
 
 __all__ = ["Candidate", "Judgement"]
 

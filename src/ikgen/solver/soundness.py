@@ -8,18 +8,17 @@ the candidate weak.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ikgen.equations.equation_set import EquationSet
 from ikgen.equations.evaluation import evaluate
 from ikgen.equations.probes import Probes, arm_size, least_regular, smallest_singular
 from ikgen.forms.form import scales
 from ikgen.kinematics.fixed_order import product
+from ikgen.model.arrays import Array
 from ikgen.solver.candidate import Candidate
 
 __all__ = ["conditions", "weak_configurations"]
 
-Array = NDArray[np.float64]
 STARTS = 24
 STEPS = 12
 REGULAR = 2e-2

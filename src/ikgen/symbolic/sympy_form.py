@@ -13,13 +13,14 @@ import sympy
 from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.errors import PlugInError
-from ikgen.forms.form import Array, Form, scales
+from ikgen.forms.form import Form, scales
 from ikgen.forms.lowered_form import (
     LoweredForm,
     Tolerances,
     divisor_of,
     natural_size,
 )
+from ikgen.model.arrays import Array
 from ikgen.symbolic.graph_expression import graph_expression
 
 __all__ = ["Recipe", "SympyForm", "form_class"]

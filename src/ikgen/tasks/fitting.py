@@ -14,8 +14,8 @@ from ikgen.program.policy import LEVEL
 from ikgen.tasks import AXES, POSE, TASKS, Task
 
 if TYPE_CHECKING:
+    from ikgen.model.arrays import Array
     from ikgen.model.dh import DHChain
-    from ikgen.model.joint_tree import Matrix
 
 __all__ = [
     "fits",
@@ -54,7 +54,7 @@ def fitting_tasks(dh: DHChain, axis: str | None = None) -> tuple[Task, ...]:
     An arm with fewer than six moving joints gets the task that fixes as many freedoms as it has, if
     its joints do move all of them; the whole pose then only counts on the poses that it can take.
     """
-    moving = dh.dof - len(dh.free)
+    moving = dh.moving
     if moving >= POSE.freedoms:
         return (POSE,)
     sized = [task for task in TASKS if task.freedoms == moving]
@@ -80,7 +80,7 @@ def fits(dh: DHChain, task: Task) -> bool:
     """Whether the joints that are not held move the task's freedoms independently of each other."""
     if task.orientation == "yaw" and not keeps_heading_level(dh, task.axis):
         return False  # a heading is well-defined where the tool's axis stays horizontal
-    return freedoms_moved(dh, task) == dh.dof - len(dh.free)
+    return freedoms_moved(dh, task) == dh.moving
 
 
 def over_constrained(dh: DHChain, task: Task) -> int:
@@ -100,7 +100,7 @@ def keeps_heading_level(dh: DHChain, axis: str) -> bool:
     return bool(_shortened(dh, axis).max() < _LEVEL)
 
 
-def _shortened(dh: DHChain, axis: str) -> Matrix:
+def _shortened(dh: DHChain, axis: str) -> Array:
     """By how much the square of the heading's length falls short of 1, at some configurations (64,)."""
     q = np.random.default_rng(0).uniform(-np.pi, np.pi, (64, dh.dof))
     return np.asarray(file_forward(dh, q)[:, 2, AXES.index(axis)] ** 2)
@@ -119,7 +119,7 @@ def freedoms_barely_moved(dh: DHChain, task: Task) -> int:
     return int((ratios > _ROUND_OFF).sum()) - rank(ratios)
 
 
-def rank(ratios: Matrix) -> int:
+def rank(ratios: Array) -> int:
     """How many of singular values, each over the largest, are those of independent motions."""
     return int((ratios > _INDEPENDENT).sum())
 
@@ -129,20 +129,20 @@ def _condition(dh: DHChain, task: Task) -> float:
     return float(f"{min(_ratios(dh, task), default=0.0):.2g}")
 
 
-def _ratios(dh: DHChain, task: Task) -> Matrix:
+def _ratios(dh: DHChain, task: Task) -> Array:
     """Singular values of the task's motion over the largest, their median over the samples."""
     moving = [j for j, joint in enumerate(dh.joints) if joint.name not in dh.free]
     return motion_ratios(scaled_motion(dh, task)[..., moving]) if moving else np.empty(0)
 
 
-def motion_ratios(motions: Matrix) -> Matrix:
+def motion_ratios(motions: Array) -> Array:
     """Singular values of motions (..., N, entries, joints) over the largest, their median over the N
     samples: (..., k)."""
     singular = np.linalg.svd(motions, compute_uv=False)
     return np.asarray(np.median(singular / np.maximum(singular[..., :1], 1e-12), axis=-2))
 
 
-def scaled_motion(dh: DHChain, task: Task, q: Matrix | None = None) -> Matrix:
+def scaled_motion(dh: DHChain, task: Task, q: Array | None = None) -> Array:
     """How the task's entries change with all joints, held or not, lengths in those of the arm, at
     configurations `q` (N, dof), or at a few: (N, entries, dof)."""
     length = reach(dh)
@@ -153,6 +153,6 @@ def scaled_motion(dh: DHChain, task: Task, q: Matrix | None = None) -> Matrix:
     return np.asarray(file_slopes(dh, q)[:, read[0], read[1]] * rows[:, None] * columns)
 
 
-def _configurations(dh: DHChain) -> Matrix:
+def _configurations(dh: DHChain) -> Array:
     """A few configurations (8, dof) in rad and m, the same each time."""
     return np.random.default_rng(0).uniform(-1.5, 1.5, (8, dh.dof))

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ikgen.model.arrays import Array
 from ikgen.verify.arm import ArmUnderTest
 from ikgen.verify.reach import unreachable_poses
 from ikgen.verify.runners.runner import Runner
@@ -16,7 +16,6 @@ from ikgen.verify.trials import Question, Trial, ask_all, run_trial
 
 __all__ = ["Answers", "collect_answers"]
 
-Array = NDArray[np.float64]
 
 _INSIDE_SETS = ("at limits", "special")
 _SINGULAR_SETS = ("singular", "near singular", "boundary", "special")

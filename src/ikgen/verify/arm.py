@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ikgen.model.arrays import Array
 from ikgen.program.policy import LEVEL
 from ikgen.runtime.python.held.arm_angle import ArmAngle
 from ikgen.verify.oracle import Oracle
@@ -16,7 +17,6 @@ from ikgen.verify.task_space import TaskSpace
 
 __all__ = ["FAR_LIMIT", "REGULAR_SIGMA", "ArmUnderTest", "arm_under_test"]
 
-Array = NDArray[np.float64]
 
 REGULAR_SIGMA = 1e-3
 """Smallest singular value of the length-scaled task Jacobian above which a configuration is usually

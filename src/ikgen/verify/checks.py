@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ikgen.model.arrays import Array
 from ikgen.verify.arm import ArmUnderTest
 from ikgen.verify.singularities import on_continuum
 from ikgen.verify.trials import Trial, nearest, result, spell
@@ -17,7 +17,6 @@ __all__ = [
     "check_seed_order", "check_singular_flags",
 ]  # fmt: skip
 
-Array = NDArray[np.float64]
 
 CLOSURE_TOLERANCE = 1e-9
 """m and rad: what "right" means. Of an arm over 1 m long, or of a row with a longer slide, in units of

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ikgen.model.arrays import Array
 from ikgen.verify.arm import ArmUnderTest
 from ikgen.verify.checks import CLOSURE_TOLERANCE
 from ikgen.verify.runners.runner import Rows, Runner
@@ -27,7 +28,6 @@ __all__ = [
     "check_completeness", "sensitivity", "survey",
 ]  # fmt: skip
 
-Array = NDArray[np.float64]
 
 FAILS_ABOVE = 1e-3
 """Smallest singular value from which on a miss, or a pose without any row, usually fails the verification.

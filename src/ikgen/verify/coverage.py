@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ikgen.model.arrays import Array
 from ikgen.verify.arm import ArmUnderTest
 from ikgen.verify.checks import LIMIT_TOLERANCE
 from ikgen.verify.completeness import FOUND_TOLERANCE, sensitivity
@@ -19,8 +20,6 @@ __all__ = [
     "check_exhaustive", "check_limit_choice", "check_singular_answers", "check_status",
     "check_unreachable",
 ]  # fmt: skip
-
-Array = NDArray[np.float64]
 
 
 def check_exhaustive(

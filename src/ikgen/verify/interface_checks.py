@@ -8,6 +8,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from ikgen.model.arrays import Array
 from ikgen.verify.arm import ArmUnderTest
 from ikgen.verify.completeness import sensitivity
 from ikgen.verify.reach import invalid_poses
@@ -21,7 +22,6 @@ __all__ = [
     "check_jacobian", "check_shapes",
 ]  # fmt: skip
 
-Array = NDArray[np.float64]
 
 SAME_TOLERANCE = 1e-9  # m, rad: two functions that compute the same
 SETTLED = (

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ikgen.model.arrays import Array
 from ikgen.verify.arm import ArmUnderTest
 from ikgen.verify.checks import CLOSURE_TOLERANCE, PUT_ON_LIMIT
 from ikgen.verify.runners.runner import MovingRunner
@@ -24,7 +24,6 @@ __all__ = [
     "regular_motions",
 ]
 
-Array = NDArray[np.float64]
 
 CLEARLY_REGULAR = 0.05  # smallest singular value all the way
 FOUND = 1e-6  # rad or m

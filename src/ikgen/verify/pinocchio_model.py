@@ -14,13 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ikgen.errors import MissingToolError
+from ikgen.model.arrays import Array
 from ikgen.verify.screws import ScrewChain
 
 __all__ = ["Oracle", "load_pinocchio"]
 
 _WHOLE = 1e-12
-
-Array = NDArray[np.float64]
 
 
 def load_pinocchio() -> Any:

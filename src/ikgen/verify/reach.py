@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ikgen.model.arrays import Array
 from ikgen.verify.arm import ArmUnderTest
 from ikgen.verify.task_space import TaskSpace
 
 __all__ = ["farthest_configuration", "invalid_poses", "unreachable_poses"]
 
-Array = NDArray[np.float64]
 
 _MARGIN = 1.02
 """How far outside the largest reach found a "slightly unreachable" pose lies, as a factor."""

@@ -9,15 +9,14 @@ import zlib
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ikgen.model.arrays import Array
 from ikgen.verify.arm import FAR_LIMIT, ArmUnderTest
 from ikgen.verify.reach import farthest_configuration
 from ikgen.verify.singularities import SINGULAR_SIGMA, singular_configurations
 
 __all__ = ["SampleSet", "generator", "sample_sets"]
 
-Array = NDArray[np.float64]
 
 _SPECIAL = np.array([0.0, np.pi / 2, -np.pi / 2, np.pi, -np.pi])
 _NEAR = (1e-2, 1e-4, 1e-6, 1e-8)  # rad: how far from a singular configuration

@@ -10,11 +10,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+
+from ikgen.model.arrays import Array
 
 __all__ = ["ScrewChain"]
-
-Array = NDArray[np.float64]
 
 
 def _hat(screw: Array) -> Array:

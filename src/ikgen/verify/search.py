@@ -10,11 +10,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ikgen.model.arrays import Array
 from ikgen.verify.arm import ArmUnderTest
 
 __all__ = ["CONVERGED", "converge", "find_solutions"]
 
-Array = NDArray[np.float64]
 
 CONVERGED = 1e-11
 """Scaled residual below which a start counts as converged."""

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ikgen.model.arrays import Array
 from ikgen.verify.arm import ArmUnderTest
 from ikgen.verify.search import converge
 
 __all__ = ["SINGULAR_SIGMA", "on_continuum", "singular_configurations"]
 
-Array = NDArray[np.float64]
 
 SINGULAR_SIGMA = 1e-9
 """Smallest singular value below which a configuration counts as exactly singular."""

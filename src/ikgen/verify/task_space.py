@@ -10,14 +10,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ikgen.model.arrays import Array
 from ikgen.program.policy import LEVEL
 from ikgen.tasks import AXES, Task
 
 __all__ = ["TaskSpace", "task_space"]
-
-Array = NDArray[np.float64]
 
 
 def _turn(cross: Array, dot: Array) -> Array:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ikgen.model.arrays import Array
 from ikgen.verify.arm import ArmUnderTest
 from ikgen.verify.runners.runner import Rows, Runner, Stack, solve_stacks
 from ikgen.verify.sampling import SampleSet
@@ -15,7 +16,6 @@ from ikgen.verify.verification_report import CheckResult
 
 __all__ = ["Question", "Trial", "ask_all", "nearest", "result", "run_trial", "spell"]
 
-Array = NDArray[np.float64]
 
 _CHUNK = 256  # poses compared at a time: bounds the memory for arms with many solutions
 

@@ -7,8 +7,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ikgen.model.arrays import Array
 from ikgen.model.dh import ARM_ANGLE_IDENTIFIER
 from ikgen.runtime.python.held.arm_angle import ArmAngle
 from ikgen.tasks import find_task
@@ -26,7 +26,6 @@ from ikgen.verify.verification_report import CheckResult, SigmaBand, Verificatio
 
 __all__ = ["Progress", "verify"]
 
-Array = NDArray[np.float64]
 
 Progress = Callable[[str, int, int], None]
 """Called with what comes next, how many steps are done, and how many there are."""

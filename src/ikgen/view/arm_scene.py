@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ikgen.emit.derivation import Derivation
 from ikgen.errors import MissingToolError
 from ikgen.kinematics.quaternion_rotation import quaternion, rotation
+from ikgen.model.arrays import Array
 from ikgen.reach.reach_map import ReachMap
 from ikgen.report.skeleton_bones import skeleton
 from ikgen.report.worked_example import worked_example
@@ -26,7 +26,6 @@ from ikgen.view.robot_meshes import robot_meshes
 
 __all__ = ["ArmScene", "open_server", "require_viser"]
 
-Array = NDArray[np.float64]
 
 _CHOSEN, _GHOST, _OUTSIDE = (154, 40, 2), (21, 44, 84), (132, 11, 11)
 _LAST = (79, 79, 79)

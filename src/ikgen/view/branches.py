@@ -5,16 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ikgen.emit.derivation import Derivation
 from ikgen.kinematics.forward import file_jacobian
+from ikgen.model.arrays import Array
 from ikgen.report.example_section import joint_text
 from ikgen.verify.runners.python_module import PythonModule
 
 __all__ = ["Branch", "Solved", "solved"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

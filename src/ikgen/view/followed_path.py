@@ -8,14 +8,13 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ikgen.kinematics.quaternion_rotation import quaternion, rotation
+from ikgen.model.arrays import Array
 from ikgen.verify.runners.python_module import PythonModule
 
 __all__ = ["Followed", "between", "followed"]
 
-Array = NDArray[np.float64]
 
 _STEP, _MOST = 0.02, 2000
 """Length (of the arm's size) or turn (rad) from one pose to the next, and how many poses at most."""

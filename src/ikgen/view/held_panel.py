@@ -7,9 +7,9 @@ import time
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ikgen.lowering.held_angle import held_values
+from ikgen.model.arrays import Array
 
 if TYPE_CHECKING:
     from ikgen.report.worked_example import WorkedExample
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
 __all__ = ["HeldPanel"]
 
-Array = NDArray[np.float64]
 
 _WIDEST = 6.3
 _STEPS, _SECONDS = 120, 6.0

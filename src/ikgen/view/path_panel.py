@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ikgen.model.arrays import Array
 from ikgen.view.followed_path import Followed, between, followed
 
 if TYPE_CHECKING:
@@ -14,7 +14,6 @@ if TYPE_CHECKING:
 
 __all__ = ["PathPanel"]
 
-Array = NDArray[np.float64]
 
 _COLOURS = {"OK": (5, 78, 20), "LIMITS": (183, 78, 3), "UNREACHABLE": (132, 11, 11)}
 _OTHER, _REACHED = (48, 11, 89), (3, 26, 147)

@@ -12,7 +12,6 @@ from typing import Any
 
 import numpy as np
 from lxml import etree
-from numpy.typing import NDArray
 
 from ikgen.chains.mimic import Coupling, couple
 from ikgen.emit.derivation import Reading
@@ -22,11 +21,11 @@ from ikgen.importers.xacro.package_fence import PackageFence
 from ikgen.importers.xacro.refusals import RefusedFileError
 from ikgen.importers.xml_document import children, parse_xml, shown_file
 from ikgen.kinematics.quaternion_rotation import quaternion
+from ikgen.model.arrays import Array
 from ikgen.model.joint_tree import JointTree, Source
 
 __all__ = ["RobotMeshes", "robot_meshes"]
 
-Array = NDArray[np.float64]
 
 _NODE = "/robot"
 

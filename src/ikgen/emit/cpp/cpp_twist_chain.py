@@ -9,7 +9,7 @@ from ikgen.emit.cpp.cpp_language import number
 from ikgen.emit.solver_module import SolverModule
 from ikgen.kinematics.rigid import exact_cos_sin
 from ikgen.kinematics.twist_links import TwistLink, twist_chain
-from ikgen.model.joint_tree import Matrix
+from ikgen.model.arrays import Array
 
 __all__ = ["TwistLines", "twist_lines"]
 
@@ -30,7 +30,7 @@ def twist_lines(module: SolverModule) -> TwistLines:
     return TwistLines(_rows(chain.first), links, _rows(chain.last))
 
 
-def _rows(F: Matrix) -> tuple[str, ...]:
+def _rows(F: Array) -> tuple[str, ...]:
     return tuple(_braced(map(number, row)) for row in F[:3].tolist())
 
 

@@ -8,7 +8,7 @@ from ikgen.emit.python.python_language import number
 from ikgen.emit.solver_module import SolverModule
 from ikgen.kinematics.rigid import exact_cos_sin
 from ikgen.kinematics.twist_links import TwistLink, twist_chain
-from ikgen.model.joint_tree import Matrix
+from ikgen.model.arrays import Array
 
 __all__ = ["LaneText", "lane_text"]
 
@@ -44,7 +44,7 @@ def lane_text(module: SolverModule) -> LaneText:
     )
 
 
-def _rows(F: Matrix) -> Lines:
+def _rows(F: Array) -> Lines:
     return tuple(tuple(map(number, row)) for row in F[:3].tolist())
 
 

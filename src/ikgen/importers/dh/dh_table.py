@@ -18,9 +18,10 @@ from ikgen.importers.dh.table_document import TableDocument, read_document
 from ikgen.importers.dh.table_entries import Entry, locked_entries, read_entries, read_parameters
 from ikgen.kinematics.classify import parallel_to_previous, same_line_as_previous
 from ikgen.kinematics.rigid import rotation_rpy
+from ikgen.model.arrays import Array
 from ikgen.model.chain import MOST_AXES
 from ikgen.model.dh import DHChain
-from ikgen.model.joint_tree import Matrix, Source
+from ikgen.model.joint_tree import Source
 
 __all__ = ["read_dh_table"]
 
@@ -119,7 +120,7 @@ def _redundant(dh: DHChain) -> list[str]:
     return notes
 
 
-def _transform(document: TableDocument, table: str) -> Matrix:
+def _transform(document: TableDocument, table: str) -> Array:
     """The transform (4, 4) of [base] or [tool]: xyz in m, rpy in rad as in URDF."""
     end = document.data.get(table, {})
     x = _triple(document, table, "xyz", end)

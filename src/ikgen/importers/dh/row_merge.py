@@ -17,7 +17,8 @@ from ikgen.importers.dh.entry_expression import Quantity, number
 from ikgen.importers.dh.table_entries import Entry
 from ikgen.kinematics.fixed_order import product
 from ikgen.kinematics.rigid import dh_link
-from ikgen.model.joint_tree import Limits, Matrix
+from ikgen.model.arrays import Array
+from ikgen.model.joint_tree import Limits
 
 __all__ = ["Merged", "ModifiedRow", "merge", "modified_rows", "row_matrix"]
 
@@ -43,9 +44,9 @@ class ModifiedRow:
 class Merged:
     """Moving rows between two constant transforms; `complete` if no fixed row is left between."""
 
-    X_base: Matrix
+    X_base: Array
     rows: tuple[ModifiedRow, ...]
-    X_tip: Matrix
+    X_tip: Array
     complete: bool
 
 
@@ -63,12 +64,12 @@ def modified_rows(entries: Sequence[Entry], convention: str) -> list[ModifiedRow
     return out
 
 
-def row_matrix(row: ModifiedRow) -> Matrix:
+def row_matrix(row: ModifiedRow) -> Array:
     """`Rx(alpha) Tx(a) Rz(theta) Tz(d)` (4, 4) with the variable at 0."""
     return dh_link(row.alpha.value, row.a.value, row.theta.value, row.d.value)
 
 
-def merge(rows: Sequence[ModifiedRow], X_base: Matrix, X_tip: Matrix) -> Merged:
+def merge(rows: Sequence[ModifiedRow], X_base: Array, X_tip: Array) -> Merged:
     """Fixed rows go into the ends, into their neighbours where that is exact, else they stay."""
     left = list(rows)
     while left and left[0].kind == "fixed":
@@ -121,7 +122,7 @@ def _absorb(
     return None
 
 
-def _forward(rows: list[ModifiedRow]) -> tuple[list[ModifiedRow], Matrix]:
+def _forward(rows: list[ModifiedRow]) -> tuple[list[ModifiedRow], Array]:
     """Antiparallel axes made parallel: `Rx(pi) Rz(v) Tz(d) = Rz(-v) Tz(-d) Rx(pi)`, which joins
     the next row's twist, and at last the tip's constant."""
     out: list[ModifiedRow] = []

@@ -13,9 +13,9 @@ from ikgen.kinematics.fixed_order import product
 from ikgen.kinematics.modified_dh import to_dh
 from ikgen.kinematics.rigid import read_only
 from ikgen.kinematics.snapping import SnapLog
+from ikgen.model.arrays import Array
 from ikgen.model.chain import PRISMATIC, REVOLUTE, ActuatedJoint, Chain, ChainAxis
 from ikgen.model.dh import Angle, DHChain, DHRow, Length
-from ikgen.model.joint_tree import Matrix
 
 __all__ = ["TableEnds", "chain_of_rows", "exact_chain"]
 
@@ -123,9 +123,9 @@ def _row(i: int, row: ModifiedRow, book: SymbolTable) -> DHRow:
     )
 
 
-def _file_frames(merged: Merged, rows: tuple[DHRow, ...]) -> tuple[Matrix, ...]:
+def _file_frames(merged: Merged, rows: tuple[DHRow, ...]) -> tuple[Array, ...]:
     """The table's own numbers: F_{i-1} holds row i's constants and what its offset lost."""
-    out: list[Matrix] = []
+    out: list[Array] = []
     pending = merged.X_base
     for own, row in zip(merged.rows, rows, strict=True):
         if row.revolute:
@@ -140,7 +140,7 @@ def _file_frames(merged: Merged, rows: tuple[DHRow, ...]) -> tuple[Matrix, ...]:
     return tuple(out)
 
 
-def _constant(row: ModifiedRow, theta: float, d: float) -> Matrix:
+def _constant(row: ModifiedRow, theta: float, d: float) -> Array:
     shown = replace(
         row,
         theta=replace(row.theta, value=theta),

@@ -18,7 +18,8 @@ from ikgen.importers.urdf.joint_limits import DEGREES_ABOVE, UNLIMITED, joint_li
 from ikgen.importers.xml_document import Element, Place, children
 from ikgen.kinematics.fixed_order import length
 from ikgen.kinematics.rigid import read_only, rotation_rpy
-from ikgen.model.joint_tree import Joint, JointType, Limits, Matrix, Mimic
+from ikgen.model.arrays import Array
+from ikgen.model.joint_tree import Joint, JointType, Limits, Mimic
 
 __all__ = ["read_joint", "required_attribute", "stated_limits"]
 
@@ -128,7 +129,7 @@ def _link(joint: Element, role: str, name: str, place: Place) -> str:
     return required_attribute(link, "link", f"<{role}> of joint '{name}'", place)
 
 
-def _origin(joint: Element, name: str, place: Place) -> Matrix:
+def _origin(joint: Element, name: str, place: Place) -> Array:
     """The pose (4, 4) of the joint's frame in its parent's."""
     T = np.eye(4)
     origin = _only_child(joint, "origin", name, place)
@@ -142,7 +143,7 @@ def _origin(joint: Element, name: str, place: Place) -> Matrix:
     return T
 
 
-def _axis(joint: Element, name: str, place: Place) -> Matrix:
+def _axis(joint: Element, name: str, place: Place) -> Array:
     """The unit vector (3,) of the axis in the joint's frame."""
     axis = _only_child(joint, "axis", name, place)
     xyz = _X

@@ -6,11 +6,9 @@ from __future__ import annotations
 import itertools
 from collections.abc import Sequence
 
-import numpy as np
-
 from ikgen.algebra.expression import Expr
 from ikgen.equations.knowledge import Knowledge, PolynomialEquation, Variable
-from ikgen.equations.matching import in_harmonics
+from ikgen.equations.matching import determinant_vanishes, in_harmonics
 from ikgen.forms.pair_form import LinearPair
 from ikgen.solver.candidate import Candidate
 
@@ -39,9 +37,7 @@ def find(
     linear.sort(key=lambda item: _weight(item[0]))
     out: list[Candidate] = []
     for (one, e1), (two, e2) in itertools.combinations(linear[:MOST_EQUATIONS], 2):
-        det = one[0].probe * two[1].probe - one[1].probe * two[0].probe
-        size = one[0].scale * two[1].scale + one[1].scale * two[0].scale
-        if np.max(np.abs(det)) > 1e-9 * size:
+        if not determinant_vanishes(one[:2], two[:2]):
             sources = (*e1.sources, *e2.sources)
             out.append(Candidate(unknown, "simultaneous", LinearPair(*one, *two), sources))
     return out

@@ -7,12 +7,16 @@ import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from ikgen.algebra.expression import Expr
 from ikgen.algebra.polynomial import Polynomial
 from ikgen.equations.knowledge import Knowledge, PolynomialEquation, Variable
-from ikgen.equations.matching import AngleSplit, only_known, proportional, split_angle
+from ikgen.equations.matching import (
+    AngleSplit,
+    determinant_vanishes,
+    only_known,
+    proportional,
+    split_angle,
+)
 from ikgen.forms.tangent_form import Tangent
 from ikgen.solver.candidate import Candidate
 
@@ -95,9 +99,7 @@ def _row(
 def _solve(one: _Row, two: _Row, unknown: Variable, knowledge: Knowledge) -> Candidate | None:
     """Solve the 2x2 system for factor*cos and factor*sin up to the (known) determinant's sign."""
     g = knowledge.graph
-    det = one.a.probe * two.b.probe - one.b.probe * two.a.probe
-    size = one.a.scale * two.b.scale + one.b.scale * two.a.scale
-    if np.max(np.abs(det)) <= 1e-9 * size:
+    if determinant_vanishes((one.a, one.b), (two.a, two.b)):
         return None
     x = g.sub(g.mul(one.value, two.b), g.mul(two.value, one.b))
     y = g.sub(g.mul(one.a, two.value), g.mul(two.a, one.value))

@@ -8,14 +8,13 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ikgen.model.arrays import Array
 from ikgen.model.transmission import Transmission
 from ikgen.verify.runners.cpp_header import CppHeader
 from ikgen.verify.runners.python_module import PythonModule
 from ikgen.verify.runners.runner import ArmConstants, Rows, Stack, solve_stacks
 
 __all__ = ["JointRunner"]
-
-Array = NDArray[np.float64]
 
 
 class JointRunner:

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ikgen.errors import MissingToolError
+from ikgen.model.arrays import Array
 from ikgen.processes.executors import spare_cores
 from ikgen.processes.outside_program import RunningProgram
 from ikgen.processes.scratch_folder import ScratchFolder
@@ -22,7 +23,6 @@ from ikgen.verify.runners.runner import Stack
 
 __all__ = ["Answer", "Solve", "help_out", "solve_with_helpers"]
 
-Array = NDArray[np.float64]
 
 Answer = tuple[Array, str, NDArray[np.bool_]]
 """Rows (k, dof), status and singular flags (k,) of a pose."""

@@ -15,13 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ikgen.errors import BadDescriptionError
+from ikgen.model.arrays import Array
 from ikgen.tasks import find_task
 from ikgen.verify.runners.module_helpers import Answer, solve_with_helpers
 from ikgen.verify.runners.runner import ArmConstants, Rows, Stack
 
 __all__ = ["PythonModule"]
 
-Array = NDArray[np.float64]
 
 _ALONE = 32  # one pose of so many is solved by itself
 

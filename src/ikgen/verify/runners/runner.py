@@ -9,11 +9,10 @@ from typing import NamedTuple, Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
+from ikgen.model.arrays import Array
 from ikgen.tasks import POSE
 
 __all__ = ["ArmConstants", "MovingRunner", "Rows", "Runner", "Stack", "StackRunner", "solve_stacks"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
