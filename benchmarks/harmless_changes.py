@@ -319,7 +319,7 @@ HARMLESS = (
     ),
     HarmlessChange(
         "verify/motion_checks.py",
-        "regular = np.flatnonzero(clear & (sigma.reshape(_BETWEEN, -1).min(axis=0) > CLEARLY_REGULAR))",
+        "regular = np.flatnonzero(clear & (sigma.reshape(_BETWEEN, -1).min(axis=0) > REGULAR_ON_PATH))",
         "1", "2", "any negative length is worked out from the others",
     ),
     HarmlessChange(

@@ -129,7 +129,7 @@ def test_limits_beyond_half_a_turn_on_one_side_are_far(
         "ikgen.emit.cpp.cpp_emitter.render", lambda *_, **values: told.update(values) or ""
     )
     emit_header(with_limits(made_module(), (-1.0, 1.0), limits, (-0.1, 0.2)))
-    assert told["far"] is far
+    assert told["far_limits"] is far
     assert told["order"] == [0, 2, 4, 6, 1, 3, 5, 7] and told["held"] == 1 and told["folds"] == 2
     assert told["lower"] == ["-1.0", str(limits[0]) if limits != EVERY else
                              "-std::numeric_limits<double>::infinity()", "-0.1"]  # fmt: skip

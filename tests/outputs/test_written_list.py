@@ -10,7 +10,7 @@ from tests.support.small_robots import write_robot
 
 from ikgen.cli.main import run
 from ikgen.errors import UsageError
-from ikgen.outputs.written_list import listed, publish_listed
+from ikgen.outputs.written_list import digests_listed, publish_listed
 
 REPORT = ["report", "elbow.urdf", "--task", "position", "--no-verify", "-q", "-o", "out"]
 
@@ -30,7 +30,7 @@ def test_what_changes_nothing_or_is_ours_is_written(tmp_path: Path) -> None:
     assert (out / "map.html").read_text() == "two"
     (out / "other.html").write_text("theirs")
     publish_listed(out, "map", {"other.html": "theirs"})  # as it is to become
-    assert {path.name for path in listed(out, "map")} == {"map.html", "other.html"}
+    assert {path.name for path in digests_listed(out, "map")} == {"map.html", "other.html"}
 
 
 @pytest.mark.parametrize("name", ["map.html", "new.html", "map.json"])
@@ -49,7 +49,7 @@ def test_what_is_removed_was_ours(tmp_path: Path) -> None:
     publish_listed(tmp_path, "map", {"map/1": b"one", "map/2": b"two"})
     gone = tmp_path / "map/2"
     publish_listed(tmp_path, "map", {"map/1": b"one"}, [gone])
-    assert not gone.exists() and len(listed(tmp_path, "map")) == 1
+    assert not gone.exists() and len(digests_listed(tmp_path, "map")) == 1
     gone.write_bytes(b"theirs")
     with pytest.raises(UsageError, match="2 is in no record"):
         publish_listed(tmp_path, "map", {"map/1": b"one"}, [gone])
@@ -58,7 +58,7 @@ def test_what_is_removed_was_ours(tmp_path: Path) -> None:
 def test_list_that_names_places_outside_says_nothing(tmp_path: Path) -> None:
     text = json.dumps({"generator": "ikgen", "files": {"../mine": "0" * 64}})
     (tmp_path / "map.json").write_text(text)
-    assert listed(tmp_path, "map") == {}
+    assert digests_listed(tmp_path, "map") == {}
 
 
 def test_edited_report_needs_force(here: Path, capsys: pytest.CaptureFixture[str]) -> None:

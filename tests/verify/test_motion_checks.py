@@ -17,7 +17,7 @@ from ikgen.records.request import Request
 from ikgen.tasks import find_task
 from ikgen.verify.arm import ArmUnderTest, arm_under_test
 from ikgen.verify.motion_checks import (
-    CLEARLY_REGULAR,
+    REGULAR_ON_PATH,
     check_self_motion,
     motion_checks,
     regular_motions,
@@ -82,7 +82,7 @@ def test_motions_are_regular_and_inside_the_limits() -> None:
     assert len(motions.start) == 15
     middle = 0.5 * (motions.start + motions.end)
     for q in (motions.start, middle, motions.end):
-        assert (a.sigma(q) > CLEARLY_REGULAR).all() and a.within(q).all()
+        assert (a.sigma(q) > REGULAR_ON_PATH).all() and a.within(q).all()
     moved = np.abs(motions.end - motions.start)
     assert 0.15 < moved.max() <= 0.2
     assert (np.abs(np.sign(motions.end - motions.start).mean(axis=0)) < 0.9).all()  # both ways

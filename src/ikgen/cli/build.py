@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ikgen.cli.completion import GivenPath, RobotFile
 from ikgen.cli.console import Console
 from ikgen.cli.error_output import as_object, say
 from ikgen.cli.options import console_options, executor_option, trust_option
+from ikgen.cli.parameter_types import GivenPath, RobotFile
 from ikgen.cli.work_text import work_text
 from ikgen.model.counted import counted
 from ikgen.projects.config import ArmConfig, named_config

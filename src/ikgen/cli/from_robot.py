@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ikgen.cli.completion import GivenPath, RobotFile
 from ikgen.cli.console import Console
 from ikgen.cli.options import (
     chain_options,
@@ -18,6 +17,7 @@ from ikgen.cli.options import (
     sampling_options,
     table_options,
 )
+from ikgen.cli.parameter_types import GivenPath, RobotFile
 from ikgen.cli.request_options import make_request, parse_emit
 from ikgen.errors import IkgenError, UsageError
 from ikgen.records.request import Outputs, is_table

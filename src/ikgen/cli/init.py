@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ikgen.cli.completion import GivenPath, RobotFile
 from ikgen.cli.console import Console
 from ikgen.cli.options import (
     console_options,
@@ -17,6 +16,7 @@ from ikgen.cli.options import (
     listed_emit_option,
     reading_options,
 )
+from ikgen.cli.parameter_types import GivenPath, RobotFile
 from ikgen.cli.request_options import make_request, parse_emit
 from ikgen.model.counted import counted, listed
 

@@ -8,9 +8,9 @@ from typing import Any
 
 import click
 
-from ikgen.cli.completion import RobotFile
 from ikgen.cli.console import Console
 from ikgen.cli.options import chain_options, console_options
+from ikgen.cli.parameter_types import RobotFile
 from ikgen.cli.request_options import make_request
 
 __all__ = ["inspect"]

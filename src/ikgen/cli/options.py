@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 import click
 
-from ikgen.cli.completion import Emits, GivenPath, Joints, Links, Tasks
+from ikgen.cli.parameter_types import Emits, GivenPath, Joints, Links, Tasks
 from ikgen.generation.emitters import EMITTERS
 from ikgen.tasks import AXES, TASKS
 

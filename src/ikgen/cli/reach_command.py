@@ -11,7 +11,6 @@ from typing import Any
 
 import click
 
-from ikgen.cli.completion import GivenPath, RobotFile
 from ikgen.cli.console import Console
 from ikgen.cli.options import (
     chain_options,
@@ -19,6 +18,7 @@ from ikgen.cli.options import (
     executor_options,
     force_option,
 )
+from ikgen.cli.parameter_types import GivenPath, RobotFile
 from ikgen.cli.request_options import make_request
 
 __all__ = ["reach"]

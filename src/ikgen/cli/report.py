@@ -8,10 +8,10 @@ from typing import Any
 
 import click
 
-from ikgen.cli.completion import GivenPath, RobotFile
 from ikgen.cli.console import Console
 from ikgen.cli.error_output import ResultError
 from ikgen.cli.options import chain_options, console_options, force_option, sampling_options
+from ikgen.cli.parameter_types import GivenPath, RobotFile
 from ikgen.cli.request_options import make_request
 from ikgen.generation.emitters import EMITTERS
 from ikgen.records.request import Outputs

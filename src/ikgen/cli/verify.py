@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 import click
 
 from ikgen.cli.annotations import annotate, annotate_error
-from ikgen.cli.completion import GivenPath
 from ikgen.cli.console import Console
 from ikgen.cli.options import console_options, executor_options, sampling_options, trust_option
+from ikgen.cli.parameter_types import GivenPath
 from ikgen.cli.recheck_json import as_dict
 from ikgen.errors import IkgenError
 

@@ -9,9 +9,9 @@ from typing import Any
 
 import click
 
-from ikgen.cli.completion import GivenPath, RobotFile
 from ikgen.cli.console import Console
 from ikgen.cli.options import chain_options
+from ikgen.cli.parameter_types import GivenPath, RobotFile
 from ikgen.cli.request_options import make_request
 from ikgen.errors import UsageError
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 __all__ = ["solve_as_written"]
 
-Attempt = Callable[["DHChain", Collection[str] | None], "SolutionGraph"]
+SolveAmong = Callable[["DHChain", Collection[str] | None], "SolutionGraph"]
 
 _ROUND_OFF = 1e-13
 """Deviation (rad or m) of rows that are the file's own. Where rows are right to `CLOSE` but no better,
@@ -35,7 +35,7 @@ _WORTH = 0.5
 
 
 def solve_as_written(
-    dh: DHChain, graph: SolutionGraph, attempt: Attempt, whole_pose: bool = True
+    dh: DHChain, graph: SolutionGraph, attempt: SolveAmong, whole_pose: bool = True
 ) -> tuple[DHChain, SolutionGraph]:
     """Rows nearer to the file's chain than `dh` and their solution, if it is as good as `graph`.
 

@@ -63,7 +63,7 @@ def closed_form(reading: Reading, demand: Demand) -> ClosedForm:
     choices = tuple(choice for choice in choices if choice.held not in demand.refused)
     if choices:
         return _with_joints_held(reading, choices, demand)
-    found = _settled(_by_rules_somewhere(reading, demand), reading.dh, demand)
+    found = _nearest_form(_by_rules_somewhere(reading, demand), reading.dh, demand)
     return _position_instead(reading, found, demand) or found
 
 
@@ -87,7 +87,7 @@ def _position_instead(reading: Reading, found: ClosedForm, demand: Demand) -> Cl
     return form if form.closed else None
 
 
-def _settled(form: ClosedForm, read: DHChain, demand: Demand) -> ClosedForm:
+def _nearest_form(form: ClosedForm, read: DHChain, demand: Demand) -> ClosedForm:
     """The same of rows nearer to the file's; with an elimination's plan where one applies and it is not
     sound, or coarse."""
     written = as_written(form, demand)
@@ -188,7 +188,7 @@ def _taken_of(
     quick at special values of the held joints as elsewhere."""
     choice, form = tried[0]
     if form.sound:
-        return choice, _settled(form, choice.dh, demand)
+        return choice, _nearest_form(form, choice.dh, demand)
     solved: tuple[HeldChoice, ClosedForm] | None = None
     for other, open_form in tried:
         found = by_elimination(open_form, demand)

@@ -53,8 +53,8 @@ def generate(request: Request, outputs: Outputs, progress: Progress = silent) ->
     reading = read(request)
     complete_folder(outputs.out)  # first: it tells what is there
     earlier = earlier_outputs(outputs.out, request.name or default_name(reading))
-    alike = not (outputs.force or outputs.ours)
-    if alike:
+    same_arm_only = not (outputs.force or outputs.ours)
+    if same_arm_only:
         earlier.check(request, reading, _task_name(request))
     kept = () if outputs.only else tuple(n for n in earlier.emit if n not in outputs.emit)
     emitters = [*_again(kept), *asked]
@@ -64,7 +64,7 @@ def generate(request: Request, outputs: Outputs, progress: Progress = silent) ->
         error.warnings = reading.source.warnings
         raise
     derivation = made.derivation
-    if alike:
+    if same_arm_only:
         earlier.check(request, reading, derivation.task.name)
     texts = made.files | record_texts(request, outputs, derivation, made.texts)
     if not outputs.force:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from ikgen.errors import BadDescriptionError, UsageError
 from ikgen.model.module_name import identifier
 from ikgen.outputs.publish import is_generated
-from ikgen.outputs.written_list import check_written, listed, recorded
+from ikgen.outputs.written_list import check_written, digests_listed, recorded
 from ikgen.records.record import Record, digest, read_record, records_of
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ class Earlier:
     def check_files(self, out: Path, texts: Mapping[str, str], *, edited: bool = False) -> None:
         """Raises `UsageError` where a file that would be replaced is another's, or not as ikgen wrote it,
         unless it may be `edited`; `texts`: what is to be written, by name in the folder `out`."""
-        wrote: dict[Path, set[str]] = listed(out, f"{self.name}_report")
+        wrote: dict[Path, set[str]] = digests_listed(out, f"{self.name}_report")
         for path, digests in recorded(out, self.name).items():
             wrote.setdefault(path, set()).update(digests)
         own = {path.resolve() for path in (*(record.path for record in self.records), *self.broken)}

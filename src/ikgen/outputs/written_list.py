@@ -11,7 +11,7 @@ from ikgen.errors import BadDescriptionError, UsageError
 from ikgen.outputs.publish import Content, content_digest, publish
 from ikgen.records.record import GENERATOR, digest, read_record, records_of
 
-__all__ = ["Wrote", "check_written", "listed", "publish_listed", "recorded"]
+__all__ = ["Wrote", "check_written", "digests_listed", "publish_listed", "recorded"]
 
 Wrote = Mapping[Path, Collection[str]]
 """Resolved path -> SHA-256 of what ikgen wrote there, one for each record or list."""
@@ -30,14 +30,16 @@ def publish_listed(
     replaced or removed is not as ikgen wrote it, unless it is a matter of `force`. Files may also be in
     records of the arm. The paths of `files`, without the list."""
     wrote, place, gone = (
-        _both(listed(out, name), recorded(out, arm)),
+        _both(digests_listed(out, name), recorded(out, arm)),
         out / f"{name}.json",
         tuple(gone),
     )
     if not force:
         check_written(out, {place.name: None, **files}, wrote, _own(place))
         check_written(out, {path.relative_to(out).as_posix(): None for path in gone}, wrote)
-    kept = {path: found for path in listed(out, name) if (found := digest(path)) in wrote[path]}
+    kept = {
+        path: found for path in digests_listed(out, name) if (found := digest(path)) in wrote[path]
+    }
     digests = {path.relative_to(out.resolve()).as_posix(): text for path, text in kept.items()}
     removed = {path.relative_to(out).as_posix() for path in gone}
     digests |= {file: content_digest(content) for file, content in files.items()}
@@ -46,7 +48,7 @@ def publish_listed(
     return publish(out, {**files, place.name: text}, gone)[:-1]
 
 
-def listed(out: Path, name: str) -> dict[Path, set[str]]:
+def digests_listed(out: Path, name: str) -> dict[Path, set[str]]:
     """What the list `name`.json of a folder holds; nothing where there is none."""
     files = _files(out / f"{name}.json") or {}
     inside = {(out / file).resolve(): {text} for file, text in files.items()}

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from ikgen.errors import BadDescriptionError
 from ikgen.projects.config import ArmConfig
-from ikgen.records.record import SUFFIX, Record, read_record, seen
+from ikgen.records.record import SUFFIX, Record, read_record, relative_to_cwd
 
 __all__ = ["LeftOutputs", "left_outputs"]
 
@@ -37,7 +37,9 @@ def left_outputs(arms: Sequence[ArmConfig]) -> list[LeftOutputs]:
             if place[0] == out and place not in made:
                 files = [one for one in _written(path, record) if one.resolve() not in own]
                 left.setdefault(place, []).extend(files)
-    return [LeftOutputs(name, tuple(map(seen, files))) for (_, name), files in left.items()]
+    return [
+        LeftOutputs(name, tuple(map(relative_to_cwd, files))) for (_, name), files in left.items()
+    ]
 
 
 def _record(path: Path) -> Record | None:

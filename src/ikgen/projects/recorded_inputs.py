@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from ikgen.importers.packages import PACKAGE_URL, PackageFinder, PackageNotFoundError
-from ikgen.records.record import Record, seen
+from ikgen.records.record import Record, relative_to_cwd
 
 __all__ = ["Input", "Packages"]
 
@@ -31,7 +31,7 @@ class Packages:
         """The recorded inputs; those of a package that is not on this machine are left out."""
         for name, sha256 in record.inputs.items():
             if not name.startswith(PACKAGE_URL):
-                path = seen(record.folder / name)
+                path = relative_to_cwd(record.folder / name)
                 yield Input(str(path), path, sha256)
                 continue
             try:

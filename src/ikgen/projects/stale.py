@@ -22,7 +22,7 @@ from ikgen.records.record import (
     environment_digest,
     read_record,
     record_name,
-    seen,
+    relative_to_cwd,
 )
 from ikgen.records.request import Request
 
@@ -89,7 +89,7 @@ def _changed_files(record: Record, packages: Packages) -> str:
         if environment_digest(os.environ.get(name)) != was:
             return f"the environment variable {name}, which the description reads, has changed"
     for name, expected in record.files.items():
-        path = seen(record.folder / name)
+        path = relative_to_cwd(record.folder / name)
         actual = digest(path)
         if actual is None:
             return f"{path} is not there"

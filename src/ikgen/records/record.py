@@ -31,7 +31,7 @@ __all__ = [
     "record_name",
     "record_text",
     "records_of",
-    "seen",
+    "relative_to_cwd",
     "seen_from",
 ]
 
@@ -169,7 +169,8 @@ def read_record(path: Path) -> Record:
     try:
         text = path.read_text(encoding="utf-8")
         data = json.loads(text)
-        decoder = Decoder(lambda text: Path(text) if is_named(text) else seen(path.parent / text))
+        folder = path.parent
+        decoder = Decoder(lambda x: Path(x) if is_named(x) else relative_to_cwd(folder / x))
         record = decoder.table(Record, data, "the record")
         if record.request.name is None:
             raise CodecError("the record", " has no 'name'")
@@ -187,7 +188,7 @@ def read_record(path: Path) -> Record:
     return replace(record, path=path)
 
 
-def seen(path: Path) -> Path:
+def relative_to_cwd(path: Path) -> Path:
     """A path as short as it can be from the current directory."""
     whole = path.resolve()
     here = Path.cwd()

@@ -27,7 +27,7 @@ PUT_ON_LIMIT = (
 )
 DISTINCT_TOLERANCE = 1e-6  # rad or m: rows closer than this are one solution
 LIMIT_TOLERANCE = 1e-6  # rad or m: at a bound, a double root is known to about 1e-8 only
-CLEARLY_REGULAR = 1e-2  # smallest singular value above which a singular flag is wrong
+FLAGGED_REGULAR = 1e-2  # smallest singular value above which a singular flag is wrong
 
 
 def check_closure(arm: ArmUnderTest, trials: Sequence[Trial]) -> CheckResult:
@@ -101,7 +101,7 @@ def check_singular_flags(arm: ArmUnderTest, trials: Sequence[Trial]) -> CheckRes
     wrong = np.zeros(len(q), dtype=bool)
     wrong[~flags] = on_continuum(arm, q[~flags], poses[~flags])
     missing = int(wrong.sum())
-    wrong[flags] = arm.sigma(q[flags]) > CLEARLY_REGULAR
+    wrong[flags] = arm.sigma(q[flags]) > FLAGGED_REGULAR
     case = ""
     if wrong.any():
         k = int(np.argmax(wrong))

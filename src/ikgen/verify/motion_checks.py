@@ -25,7 +25,7 @@ __all__ = [
 ]
 
 
-CLEARLY_REGULAR = 0.05  # smallest singular value all the way
+REGULAR_ON_PATH = 0.05  # smallest singular value
 FOUND = 1e-6  # rad or m
 _MOTIONS, _SEARCHES, _DRAWN = 15, 3, 600
 _GRIDS = 1
@@ -59,7 +59,7 @@ def regular_motions(arm: ArmUnderTest, rng: np.random.Generator) -> Motions:
     sigma = arm.sigma((start + share * (end - start)).reshape(-1, arm.dof))
     margin = np.minimum(_MARGIN * most, room)
     clear = arm.within(start, -margin) & arm.within(end, -margin)
-    regular = np.flatnonzero(clear & (sigma.reshape(_BETWEEN, -1).min(axis=0) > CLEARLY_REGULAR))
+    regular = np.flatnonzero(clear & (sigma.reshape(_BETWEEN, -1).min(axis=0) > REGULAR_ON_PATH))
     start, end = start[regular[:_MOTIONS]], end[regular[:_MOTIONS]]
     poses = np.stack([arm.oracle.forward(start), arm.oracle.forward(end)], axis=1)
     return Motions(start, end, poses)

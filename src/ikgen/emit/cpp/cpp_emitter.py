@@ -91,7 +91,7 @@ def _shell(module: SolverModule, branches: list[int], most: int) -> str:
         joints=module.dh.joints,
         lower=[number(j.limits.lower) for j in module.dh.joints],
         upper=[number(j.limits.upper) for j in module.dh.joints],
-        far=any(_far_limits(module, j) for j in range(module.dh.dof)),
+        far_limits=any(_far_limits(module, j) for j in range(module.dh.dof)),
         text=text,
         values=text.joint_values(),
         rough=_rough(module, module.policy),
