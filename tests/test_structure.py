@@ -98,6 +98,22 @@ def test_comments_of_constants_stand_alone() -> None:
     assert len(found) > 10000 and [line for line in found if goes_on.match(line)] == []
 
 
+def test_docstrings_can_be_read_alone() -> None:
+    starts = (
+        "Those ",
+        "That of ",
+        "The same of ",
+        "The same for ",
+        "The same with ",
+        "The same as ",
+    )
+    kinds = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
+    for path in MODULES:
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            words = ast.get_docstring(node) or "" if isinstance(node, kinds) else ""
+            assert not words.startswith(starts), f"{path.name}:{node.name}: {words}"
+
+
 def test_no_module_has_the_name_of_another() -> None:
     names = Counter(path.name for path in [*MODULES, *RUNTIME.rglob("*.hpp")])
     names += Counter(

@@ -789,7 +789,7 @@ def _slide_scale(values: Array) -> Array:
 
 @cache
 def _pairs(count: int) -> tuple[_Index, _Index]:
-    """Of so many rows each, and each one before it."""
+    """Each of so many rows with each one before it."""
     return np.tril_indices(count, -1)
 
 
@@ -998,7 +998,8 @@ class _AllRows(NamedTuple):
 
 
 def _closed_form(arm: _Arm, T: Array, near: Array | None, held: Array) -> _ClosedForm:
-    """Of poses T (N, 4, 4) with the values `near` (N, dof) of joints that they leave free."""
+    """Rows of the closed form for poses T (N, 4, 4), joints that they leave free at values `near`
+    (N, dof)."""
     start = np.zeros((len(T), len(arm.lower))) if near is None else near
     with np.errstate(all="ignore"):
         found = _ClosedForm(*_in_blocks(arm.branches_batch, _PART, T, start, held))
@@ -1007,7 +1008,7 @@ def _closed_form(arm: _Arm, T: Array, near: Array | None, held: Array) -> _Close
 
 
 def _all_rows(arm: _Arm, T: Array, near: Array | None, held: Array) -> _AllRows:
-    """Of poses T (N, 4, 4), as `_closed_form` has them."""
+    """All rows for poses T (N, 4, 4), as `_closed_form` has them."""
     own, none = _closed_form(arm, T, near, held), np.zeros((len(T), 0), dtype=bool)
     return _AllRows(own, _Beside(own.q[:, :0], none, none, none))
 
@@ -1059,7 +1060,7 @@ class _Asked:
         return _aims(arm, self.T[index], self.held[index])
 
     def seed(self, k: int) -> Row | None:
-        """Of one pose."""
+        """The seed of one pose."""
         return None if self.near is None else tuple(self.near[k].tolist())
 
     def starts(self, arm: _Arm, turn: Array | None = None) -> Array:
@@ -1538,7 +1539,7 @@ class _Leads(NamedTuple):
 
 
 def _both(one: _Leads, other: _Leads) -> _Leads:
-    """Those of two."""
+    """What two found, one after the other."""
     owner = other.around.owner + len(one.starts.q)
     out: _Leads = _joined(one, other._replace(around=other.around._replace(owner=owner)))
     return out
@@ -2462,7 +2463,7 @@ def _led_to_or_along(arm: _Arm, asked: _Asked, rows: Array) -> list[list[_Found]
 
 
 def _placed_rows(arm: _Arm, asked: _Asked, limits: bool) -> list[_Answer]:
-    """Of each pose."""
+    """The rows of each pose, placed."""
     out = [_Answer() for _ in asked.T]
     left = np.arange(len(out))
     eliminated = arm.branches is None  # no joint has a value of its own then
@@ -2728,7 +2729,7 @@ def _most_defect(entries: int, off: float) -> float:
 
 
 def _determinant(columns: _Columns[_N]) -> _N:
-    """Of three columns."""
+    """The determinant of three columns."""
     u, v, w = columns
     x, y, z = u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]
     return x * w[0] + y * w[1] + z * w[2]
@@ -2764,7 +2765,7 @@ def _nearest_pose(task: _EntriesTask, T: list[list[float]], policy: _Policy) -> 
 
 
 def _nearest_poses(task: _EntriesTask, T: Array, policy: _Policy) -> Array:
-    """The same of T (N, 4, 4)."""
+    """The nearest poses of T (N, 4, 4), as `_nearest_pose` has them."""
     near, good = task.read_batch(_at_origin(T), replace(policy, pose_tolerance=_PRINTED))
     out: Array = np.where(good[:, None, None], near, T)
     out[:, :3, 3] = T[:, :3, 3]
@@ -2777,7 +2778,7 @@ def _too_far(task: _EntriesTask, T: Array, policy: _Policy) -> _Flags:
 
 
 def _at_origin(T: Array) -> Array:
-    """The same with positions at 0, but for what is no number of them."""
+    """The poses with positions at 0, but for what is no number of them."""
     out: Array = T.copy()
     out[:, :3, 3][np.isfinite(T[:, :3, 3])] = 0.0
     return out
@@ -2985,7 +2986,9 @@ def _branch_numbers(arm: _Arm, q: Array) -> list[int]:
 # All solutions of one pose.
 
 
-_SETTLED = 1e-4  # rad or m that the nearest row may be from one of its pose, where this is flat
+# rad or m: a solution of the projected pose this near to the projected row is that row; the minimum is
+# flat, so the search stops that far off
+_SETTLED = 1e-4
 
 _One = tuple[list[list[float]], Row | None, Row]
 
@@ -3442,7 +3445,7 @@ class _EntriesTask:
         return lines
 
     def _most_defect(self, policy: _Policy) -> float:
-        """Of columns that are taken for unit vectors."""
+        """What is most wrong with columns that are taken for unit vectors."""
         return _most_defect((2 if self.flat else 3) * len(self.unit), policy.pose_tolerance)
 
     def read_batch(self, T: Array, policy: _Policy) -> tuple[Array, _Flags]:

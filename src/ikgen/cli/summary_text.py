@@ -56,7 +56,7 @@ def _robot(derivation: Derivation) -> str:
 
 
 def _motors(dh: DHChain) -> list[tuple[str, str]]:
-    """Of what the solver's values are, where that is not the joints."""
+    """A line on the motors whose values the solver takes, where these are not the joints'."""
     if dh.transmission is None:
         return []
     return [("motors", "; ".join(dh.transmission.words([joint.name for joint in dh.joints])))]

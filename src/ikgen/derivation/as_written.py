@@ -54,7 +54,7 @@ def solve_as_written(
 
 
 def _labels(graph: SolutionGraph) -> frozenset[str]:
-    """Of the equations that the solution was chosen from."""
+    """Labels of the equations that the solution was chosen from."""
     candidates = (c for s in graph.steps for c in (s.candidate, *s.fallbacks, *s.rejected))
     return frozenset(e.label for c in candidates for e in c.sources)
 

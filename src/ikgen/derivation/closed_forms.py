@@ -88,7 +88,7 @@ def _position_instead(reading: Reading, found: ClosedForm, demand: Demand) -> Cl
 
 
 def _nearest_form(form: ClosedForm, read: DHChain, demand: Demand) -> ClosedForm:
-    """The same of rows nearer to the file's; with an elimination's plan where one applies and it is not
+    """The form of rows nearer to the file's; with an elimination's plan where one applies and it is not
     sound, or coarse."""
     written = as_written(form, demand)
     coarse = not written.sound or _is_coarse(written, read)
@@ -184,8 +184,8 @@ def taken_form(
 def _taken_of(
     tried: Sequence[tuple[HeldChoice, ClosedForm]], demand: Demand
 ) -> tuple[HeldChoice, ClosedForm] | None:
-    """The same of those that hold as many joints which hardly move. Of eliminations the first that is as
-    quick at special values of the held joints as elsewhere."""
+    """The choice to take of those that hold as many joints which hardly move. Of eliminations the first
+    that is as quick at special values of the held joints as elsewhere."""
     choice, form = tried[0]
     if form.sound:
         return choice, _nearest_form(form, choice.dh, demand)

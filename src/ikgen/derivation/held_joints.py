@@ -43,7 +43,7 @@ _LOOKED_AT = 128
 """Configurations at which the conditioning is looked at; fewer of them where there are many choices."""
 
 _FEWEST, _IN_ALL = 8, 2**15
-"""The fewest of these, and the most of all choices together."""
+"""Fewest configurations per choice, and most over all choices together."""
 
 _LEADING = 16
 """So many choices, those that come first, are looked at with their held joints at the defaults too."""

@@ -151,7 +151,7 @@ def by_elimination(form: ClosedForm, demand: Demand) -> ClosedForm:
 
 
 def as_written(form: ClosedForm, demand: Demand) -> ClosedForm:
-    """The same of rows nearer to the file's, if it is closed."""
+    """A closed form of rows nearer to the file's; one that is not closed as it is."""
     from ikgen.derivation.as_written import solve_as_written
 
     if not form.closed:

@@ -88,8 +88,8 @@ _Group = tuple[_Crowded, list[Elimination]]
 
 
 def _eliminations(chain: Chain, rng: np.random.Generator) -> list[_Group]:
-    """Those that apply, each with its degree, in groups of one degree and the same crowded angles, the
-    least degree first."""
+    """The eliminations that apply, each with its degree, in groups of one degree and the same crowded
+    angles, the least degree first."""
     nodes: Array = 2.0 * np.pi / _NODES * np.arange(_NODES, dtype=float)
     poses = forward(chain, rng.uniform(-np.pi, np.pi, (_POSES, 6)))
     joints = [motion[0] for motion in chain.motions]

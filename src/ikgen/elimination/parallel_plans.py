@@ -113,7 +113,7 @@ def parallel_plans(family: Array) -> tuple[ParallelPlan, ...]:
 
 
 def _deviations(frames: Array) -> dict[Elimination, float]:
-    """Of one chain (7, 4, 4)."""
+    """How far each loop's links in a chain (7, 4, 4) are off each kind that they nearly are."""
     length = typical_length(frames)
     scaled = over(frames, length)
     out: dict[Elimination, float] = {}

@@ -20,7 +20,7 @@ class GearText:
 
 
 def gear_text(module: SolverModule, number: Callable[[float], str]) -> GearText | None:
-    """That of an arm whose joints have no motor each of their own."""
+    """What templates say of motors, or None where each joint has one of its own."""
     transmission = module.dh.transmission
     if transmission is None:
         return None

@@ -69,7 +69,7 @@ class SolverModule:
 
     @property
     def on_joints(self) -> SolverModule:
-        """The same with values of joints, also where motors move several: what robot models have."""
+        """The module with values of joints, also where motors move several: what robot models have."""
         return replace(self, dh=replace(self.dh, transmission=None))
 
     @property

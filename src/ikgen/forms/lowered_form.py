@@ -29,7 +29,7 @@ ROUNDED = 2e-9
 _HALF_OF_DIGITS = 1e-8
 """What a double root has: its error leaves no direction of a smaller divisor."""
 
-Lost = Callable[[Expr], float]
+Bound = Callable[[Expr], float]
 Margin = Callable[[Expr], Expr | None]
 
 _MULTIPLIED = 12.0
@@ -54,12 +54,12 @@ singularities of what it follows from: rows that are none show by what they leav
 
 
 def nothing_lost(value: Expr) -> float:
-    """That of a value which is exact."""
+    """Default of `lost`, `moved` and `shifted`: the value is exact."""
     return 0.0 * value.scale
 
 
 def no_margin(value: Expr) -> None:
-    """That of a value which follows from the pose, and what loses nothing of it."""
+    """Default of `folded` and `margin`: there is none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,17 +90,17 @@ class Tolerances:
     error: float = 0.0
     folded: Margin = no_margin
     margin: Margin = no_margin
-    lost: Lost = nothing_lost
-    moved: Lost = nothing_lost
-    shifted: Lost = nothing_lost
+    lost: Bound = nothing_lost
+    moved: Bound = nothing_lost
+    shifted: Bound = nothing_lost
     double: Expr | None = None
 
     @staticmethod
     def for_model_error(
         error: float,
-        lost: Lost = nothing_lost,
-        moved: Lost = nothing_lost,
-        shifted: Lost = nothing_lost,
+        lost: Bound = nothing_lost,
+        moved: Bound = nothing_lost,
+        shifted: Bound = nothing_lost,
     ) -> Tolerances:
         """Tolerances where the solved geometry is `error` (m or rad) off the file's.
 

@@ -75,7 +75,7 @@ class TrigPolynomial(Form):
 
     @property
     def coefficients(self) -> tuple[Expr, ...]:
-        """Those of the terms, and the constant."""
+        """The coefficients of the terms, and the constant."""
         return self.terms
 
     @property

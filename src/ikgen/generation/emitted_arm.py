@@ -23,5 +23,5 @@ class EmittedArm:
 
     @classmethod
     def of(cls, module: SolverModule) -> EmittedArm:
-        """That of a module that is about to be emitted."""
+        """The arm of a module that is about to be emitted."""
         return cls(module.name, module.dh, module.task, module.max_solutions)

@@ -164,5 +164,5 @@ def find_emitter(name: str) -> Emitter:
 
 
 def emitter_names() -> list[str]:
-    """Of ikgen's own emitters and those of other packages."""
+    """Names of ikgen's own emitters and those of other packages."""
     return [*(emitter.name for emitter in EMITTERS), *(one.name for one in plug_ins(GROUP))]

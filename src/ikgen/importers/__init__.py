@@ -36,7 +36,7 @@ class _Reader(Protocol):
 
 
 class _CarefulReader(Protocol):
-    """The same of an importer whose files can compute, and are held back from it."""
+    """What the module of an importer offers whose files can compute, and are held back from it."""
 
     def read(
         self,

@@ -62,7 +62,7 @@ def without_arm_angle(dh: DHChain) -> str:
 
 
 def elbow_geometry(dh: DHChain) -> ElbowGeometry:
-    """That of the exact rows. Raises UsageError for an arm without an arm angle."""
+    """The elbow geometry of the exact rows. Raises UsageError for an arm without an arm angle."""
     lack = without_arm_angle(dh)
     if lack:
         raise UsageError(

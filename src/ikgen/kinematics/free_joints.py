@@ -54,7 +54,7 @@ def _choices(joint: ActuatedJoint, value: float | None, length: float) -> tuple[
 
 
 def _leaving_all(dh: DHChain, values: Iterable[tuple[float, ...]]) -> Iterator[tuple[float, ...]]:
-    """Those of some held values with which what moves has, at one of the samples at least, all directions
+    """The held values among these with which what moves has, at one of the samples at least, all directions
     that it has for others."""
     import numpy as np
 

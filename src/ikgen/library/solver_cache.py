@@ -71,7 +71,7 @@ class SolverCache:
 
     @classmethod
     def default(cls) -> SolverCache:
-        """That of this user."""
+        """The cache of this user."""
         return cls(cache_folder() / "solvers")
 
     def key(self, request: Request, outputs: Outputs) -> str:

@@ -153,7 +153,7 @@ class Placement:
 
     @property
     def tolerances(self) -> Tolerances:
-        """Those of the next unknown."""
+        """Tolerances of the next unknown."""
         double = None if self._tolerances.fold else self.double
         margin = self.digits.behind
         tolerances = replace(self._tolerances, margin=margin, double=double)

@@ -202,7 +202,7 @@ class DHChain:
         return tuple(names)
 
     def constants(self) -> Iterator[Angle | Length]:
-        """Those of all rows, base to tip, also zeros and multiples of pi, which have no names."""
+        """The constants of all rows, base to tip, also zeros and multiples of pi, which have no names."""
         for row in self.rows:
             yield from (row.alpha, row.a, row.d, row.theta, row.offset)
 

@@ -134,7 +134,7 @@ def complete(out: Path) -> None:
 
 
 def complete_folder(out: Path) -> None:
-    """The same for a folder that may not be there."""
+    """Like `complete`, for a folder that may not be there."""
     if out.is_dir():
         with publishing_alone(out):
             complete(out)

@@ -82,7 +82,7 @@ def _bytes(content: Content) -> bytes:
 
 
 def left_over(paths: Iterable[Path], files: Collection[Path]) -> tuple[Path, ...]:
-    """Those of the paths that an earlier run generated and that are not of `files`."""
+    """The paths that an earlier run generated and that are not of `files`."""
     return tuple(path for path in paths if path not in files and is_generated(path))
 
 

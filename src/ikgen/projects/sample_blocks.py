@@ -66,7 +66,7 @@ def blocks_checked(
 
 
 def _seed(seed: int, block: int) -> int:
-    """That of a block, far from the seeds that people give."""
+    """The seed of a block, far from the seeds that people give."""
     import numpy as np
 
     return int(np.random.SeedSequence([seed, block]).generate_state(1)[0])

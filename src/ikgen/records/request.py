@@ -185,8 +185,9 @@ class Outputs:
     """What to write and how to check it.
 
     `emit` names outputs, `out` is the folder that they go to, `samples` random poses are drawn from `seed`.
-    `only`: those made earlier by the same name are not kept. What is replaced is as ikgen wrote it for the
-    same robot, chain and task; `ours`: ikgen wrote it; `force`: anything.
+    `only`: earlier outputs of the same name are not made again. By default a file is replaced only if ikgen
+    wrote it, unedited, for the same robot, chain and task; with `ours` if ikgen wrote it at all, with
+    `force` always. `verify`: whether outputs are verified before they are written.
     """
 
     emit: tuple[str, ...] = field(default=("python",), metadata=coded(_some))

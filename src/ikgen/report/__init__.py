@@ -33,7 +33,7 @@ def emit_report(
 
 
 def emit_unsolved(found: Unsolved, advice: str = "") -> dict[str, str]:
-    """The same files for an arm without a closed form: what was solved, what is left, how near the
+    """The report's files for an arm without a closed form: what was solved, what is left, how near the
     leaves came, and what would help (`advice`)."""
     page = UnsolvedPage.of(found)
     blocks = [block for section in UNSOLVED for block in section(page)]

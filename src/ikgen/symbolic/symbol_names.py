@@ -26,7 +26,7 @@ class SymbolNames:
 
     @property
     def constants(self) -> dict[str, sympy.Symbol]:
-        """Those of the whole chain by name."""
+        """The constants of the whole chain by name."""
         return dict(self._constants)
 
     def pose(self, entry: str) -> sympy.Symbol:

@@ -56,7 +56,7 @@ class Recipe:
 
     @cached_property
     def values(self) -> tuple[tuple[sympy.Expr, ...], ...]:
-        """The same as quotients."""
+        """The branches' values as quotients."""
         return tuple(tuple(above / below for above, below in one) for one in self.fractions)
 
     @cached_property

@@ -197,5 +197,5 @@ def _named(name: str) -> Task:
 
 
 def task_names() -> list[str]:
-    """Of ikgen's own tasks and those of other packages."""
+    """Names of ikgen's own tasks and those of other packages."""
     return [*(task.name for task in TASKS), *(one.name for one in plug_ins("ikgen.tasks"))]

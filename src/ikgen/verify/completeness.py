@@ -71,7 +71,7 @@ class Sensitivity:
 
 
 def sensitivity(arm: ArmUnderTest, q: Array) -> Sensitivity:
-    """That of configurations q (N, dof)."""
+    """The sensitivity of the configurations q (N, dof)."""
     if not len(q) or not arm.active:
         return Sensitivity(np.ones(len(q)), np.zeros(len(q)))
     active = list(arm.active)

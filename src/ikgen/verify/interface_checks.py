@@ -132,7 +132,7 @@ def _others(arm: ArmUnderTest, rows: Rows, reference: Rows) -> NDArray[np.bool_]
 
 
 def check_determinism(first: Trial, second: Trial) -> CheckResult:
-    """The same poses twice give the same bits."""
+    """Equal poses, solved twice, give the same bits."""
     same = [np.array_equal(a, b) for a, b in zip(first.rows, second.rows, strict=True)]
     return result("determinism", len(same), len(same) - sum(same))
 

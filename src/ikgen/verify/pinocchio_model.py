@@ -149,7 +149,7 @@ class Oracle:
 
     @functools.cached_property
     def screws(self) -> ScrewChain:
-        """The same kinematics as a product of exponentials, for searches over large batches."""
+        """The model's kinematics as a product of exponentials, for searches over large batches."""
         home, J = self._columns(self._zero())
         J[:3] -= np.cross(J[3:].T, home[:3, 3]).T
         n = self._model.njoints - 1

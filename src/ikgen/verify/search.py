@@ -20,7 +20,8 @@ CONVERGED = 1e-11
 """Scaled residual below which a start counts as converged."""
 
 _HELD = 1e-8
-"""How far rows may be off what is held (as `ArmUnderTest.held_off` says): the other half plane is out."""
+"""Largest `held_off` of a solution that is kept. Newton aims at a line that both half planes contain; the
+wrong half is off by far more."""
 
 _LONGEST_STEP = 0.6  # rad, or lengths of the arm
 

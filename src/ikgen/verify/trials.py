@@ -79,7 +79,7 @@ def ask_all(
 def run_trial(
     runner: Runner, arm: ArmUnderTest, sample: SampleSet, *, limits: bool, seeded: bool = False
 ) -> Trial:
-    """That of one set."""
+    """What running one set of poses shows."""
     return ask_all(runner, arm, [Question([sample], limits, seeded)])[0][0]
 
 

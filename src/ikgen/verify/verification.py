@@ -81,7 +81,7 @@ def _plan(
 def _motion_checks(
     runner: Runner, arm: ArmUnderTest, seed: int
 ) -> dict[str, Callable[[], CheckResult]]:
-    """Those of code that moves."""
+    """The checks of code that has paths, searches and intervals."""
     if not isinstance(runner, MovingRunner) or not runner.moves:
         return {}
     return motion_checks(arm, runner, regular_motions(arm, generator(seed, "motions")))

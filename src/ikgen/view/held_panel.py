@@ -48,7 +48,7 @@ class HeldPanel:
 
     @property
     def values(self) -> Array | None:
-        """Of all sliders."""
+        """The values of all sliders."""
         return np.array([slider.value for slider in self._sliders]) if self._sliders else None
 
     def describe(self, pose: Array) -> None:

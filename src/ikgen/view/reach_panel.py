@@ -78,7 +78,7 @@ class ReachPanel:
 
 
 def _range(found: ReachMap | None, size: float) -> tuple[float, float]:
-    """Of the cut."""
+    """From where to where (m) the cut can be moved."""
     if found is None:
         return -round(1.5 * size, 2), round(1.5 * size, 2)
     low, high = float(found.grid.y[0]), float(found.grid.y[-1])

@@ -58,7 +58,7 @@ def bundle(names: Iterable[str], system: Iterable[str] = ()) -> Bundle:
 def bundle_for(
     shell: str, facts: ArmFacts, names: Iterable[str], system: Iterable[str] = ()
 ) -> Bundle:
-    """The same of what one shell, and the types of an arm of which `facts` are known, lead to."""
+    """The bundle of what one shell, and the types of an arm of which `facts` are known, lead to."""
     order = _in_order(names)
     parts = [(_header(name).title, _definitions(name, facts)) for name in order]
     kept = needed((one for _, given in parts for one in given), words(masked(shell)))

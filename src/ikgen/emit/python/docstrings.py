@@ -37,9 +37,9 @@ def summary(text: str, *, short: bool = True) -> str:
 
 
 def docstrings(parts: Iterable[ast.AST], start: int) -> Iterator[Docstring]:
-    """Those of functions and classes among the parts of a definition whose first line is `start` (from 1),
-    in order, where they say more than their summary. Those of classes, which tell what their members
-    are, are whole sentences; of methods that implement what a protocol tells there are none."""
+    """Docstrings of functions and classes among the parts of a definition whose first line is `start`
+    (from 1), in order, where they say more than their summary. Those of classes, which tell what their
+    members are, are whole sentences; of methods that implement what a protocol tells there are none."""
     blocks = [part for part in parts if isinstance(part, ast.FunctionDef | ast.ClassDef)]
     for part in sorted(blocks, key=lambda block: block.lineno):
         text, node = ast.get_docstring(part), part.body[0]

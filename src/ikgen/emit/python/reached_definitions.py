@@ -32,7 +32,7 @@ class Reached:
 
     @property
     def modules(self) -> tuple[RuntimeSource, ...]:
-        """Those of which something is used, each after those that it imports."""
+        """The modules of which something is used, each after those that it imports."""
         order: dict[str, None] = {}
         used = {module for module, _ in self.names}
         for module in sorted(used, key=_alone):

@@ -47,7 +47,7 @@ def settled(text: str, facts: Facts) -> str:
 
 
 def facts_in(text: str, facts: Facts) -> Facts:
-    """Those that a text hangs on."""
+    """The facts that a text mentions."""
     if "class Arm:" in text:
         return facts
     return tuple(one for one in facts if f"arm.{one[0]}" in text)
@@ -68,7 +68,7 @@ def _settled(text: str, known: _Known) -> str:
 
 
 def _apart(patches: list[_Patch]) -> Iterator[_Patch]:
-    """Those that do not touch one before."""
+    """The patches that do not touch one before."""
     end = 0
     for one in patches:
         if one[0] > end:
@@ -138,7 +138,7 @@ def _plainer_types(node: ast.ClassDef, lines: list[bytes], known: _Known) -> Ite
 
 
 def _fewer_operands(node: ast.BoolOp, lines: list[bytes], known: _Known) -> Iterator[_Patch]:
-    """Without one that leaves the others to decide."""
+    """Drops operands of `and`/`or` that are known not to decide."""
     plain = isinstance(node.op, ast.And)
     spans = [_with_brackets(one, lines) for one in node.values]
     whole = spans[0][0], spans[-1][1]

@@ -31,12 +31,12 @@ class JointRunner:
         return self._runner.constants
 
     def close(self) -> None:
-        """That of what it runs, if it has one."""
+        """Close what it runs, if that can be closed."""
         if isinstance(self._runner, CppHeader):
             self._runner.close()
 
     def _motors(self, joints: Array) -> Array:
-        """Those of another length as they are: the code has to refuse them."""
+        """Motor values of joint values; rows of another length as they are: the code has to refuse them."""
         if joints.shape[-1:] != self._transmission.offset.shape:
             return joints
         return self._transmission.motors(joints)

@@ -34,9 +34,10 @@ _PART = 1024
 """Poses solved together: how many they are changes last digits, so the number of cores has no say in it."""
 
 _MANY = 1000
-"""Poses from which on it is found out how long they may take, from one"""
+"""With fewer poses than this, no helper is considered."""
+
 _TRIED = 64
-"""of so many."""
+"""One pose in this many is timed to estimate the whole."""
 
 _WORTH = 1.5
 """Seconds of work for which other processes are started: each takes some 0.4 s to load the module."""
@@ -62,7 +63,7 @@ def _parts(stack: Stack) -> list[Stack]:
 
 
 def _joined(answers: Sequence[list[Answer]]) -> list[Answer]:
-    """Those to the parts in the order of the poses."""
+    """The answers to all parts in the order of the poses."""
     n = len(answers)
     return [answers[k % n][k // n] for k in range(sum(map(len, answers)))]
 

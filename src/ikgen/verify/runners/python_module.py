@@ -128,7 +128,7 @@ class PythonModule:
         return [self._rows(one) for one in answers]
 
     def answers(self, stack: Stack) -> list[Answer]:
-        """Those to the poses of one stack, in this process."""
+        """The answers to the poses of one stack, in this process."""
         each = np.arange(len(stack.poses))
         stacks = hasattr(self.module, "_solve_each") and not hasattr(self.module, "_MOTORS")
         alone = each % _ALONE == 0 if stacks else each >= 0
@@ -142,7 +142,7 @@ class PythonModule:
         return [self._answer(one) for one in found]
 
     def _answer(self, found: Any) -> Answer:
-        """Of `Solutions`."""
+        """The answer that a `Solutions` is."""
         q = np.asarray(found.q, dtype=float).reshape(-1, self._constants.dof)
         return q, found.status.name, np.asarray(found.singular, dtype=bool).reshape(len(q))
 

@@ -64,7 +64,7 @@ class Rows:
         return np.nonzero(mask)[0], self.q[mask], self.singular[mask]
 
     def at(self, index: NDArray[np.int64]) -> Rows:
-        """Those of the poses `index` (k,)."""
+        """The rows of the poses `index` (k,)."""
         status = tuple(self.status[k] for k in index.tolist())
         return Rows(self.q[index], self.count[index], status, self.singular[index])
 

@@ -16,7 +16,7 @@ template <class Arm, bool kAngle = Arm::kArmAngle> struct HeldAim {
   HeldAim(const Eigen::Isometry3d& T, const std::array<double, Arm::kFree>&) noexcept : pose(T) {}
   explicit HeldAim(const Eigen::Isometry3d& T) noexcept : pose(T) {}
 
-  // One that slopes may be taken at.
+  // An aim for taking derivatives alone; its pose is arbitrary.
   static HeldAim own(const double*) noexcept { return HeldAim(Eigen::Isometry3d::Identity()); }
 
   // What a configuration has of the values that are held.

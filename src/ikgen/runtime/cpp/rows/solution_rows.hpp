@@ -94,7 +94,7 @@ template <class Arm> struct SolutionRows {
     return true;
   }
 
-  // Whether all values are.
+  // Whether all joint values are inside the limits.
   static bool within(const double* q) noexcept {
     bool in = true;
     for (int j = 0; j < Arm::kDof; ++j) {

@@ -27,7 +27,7 @@ def nearest_pose(task: Task, T: list[list[float]], policy: Policy) -> list[list[
 
 
 def nearest_poses(task: Task, T: Array, policy: Policy) -> Array:
-    """The same of T (N, 4, 4)."""
+    """The nearest poses of T (N, 4, 4), as `nearest_pose` has them."""
     near, good = task.read_batch(_at_origin(T), replace(policy, pose_tolerance=_PRINTED))
     out: Array = np.where(good[:, None, None], near, T)
     out[:, :3, 3] = T[:, :3, 3]
@@ -40,7 +40,7 @@ def too_far(task: Task, T: Array, policy: Policy) -> Flags:
 
 
 def _at_origin(T: Array) -> Array:
-    """The same with positions at 0, but for what is no number of them."""
+    """The poses with positions at 0, but for what is no number of them."""
     out: Array = T.copy()
     out[:, :3, 3][np.isfinite(T[:, :3, 3])] = 0.0
     return out

@@ -24,7 +24,7 @@ class LaneTask(Protocol):
 
 @dataclass(frozen=True)
 class PoseLanes:
-    """Those of the whole pose."""
+    """Differences of whole poses, in lanes."""
 
     size: float
 
@@ -48,7 +48,7 @@ class PoseLanes:
 
 @dataclass(frozen=True)
 class EntriesLanes:
-    """Of `EntriesTask`; `weight` (m,)."""
+    """Differences of the entries that an `EntriesTask` reads, in lanes; `weight` (m,)."""
 
     entries: Entries
     weight: Array

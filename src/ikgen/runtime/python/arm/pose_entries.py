@@ -84,7 +84,7 @@ class EntriesTask:
         return lines
 
     def _most_defect(self, policy: Policy) -> float:
-        """Of columns that are taken for unit vectors."""
+        """What is most wrong with columns that are taken for unit vectors."""
         return most_defect((2 if self.flat else 3) * len(self.unit), policy.pose_tolerance)
 
     def read_batch(self, T: Array, policy: Policy) -> tuple[Array, Flags]:

@@ -43,7 +43,7 @@ class Task(Protocol):
         that is beyond `FARTHEST`."""
 
     def read_batch(self, T: Array, policy: Policy) -> tuple[Array, Flags]:
-        """The same for T (N, 4, 4), and which of them `read` takes."""
+        """`read` for T (N, 4, 4), and which of them `read` takes."""
 
     def error(self, pose: Array, T: Array) -> Array:
         """Differences (k, m) of poses (k, 4, 4) from those asked for, T (k, 4, 4)."""

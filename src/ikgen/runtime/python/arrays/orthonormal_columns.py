@@ -41,7 +41,7 @@ def most_defect(entries: int, off: float) -> float:
 
 
 def determinant(columns: Columns[_N]) -> _N:
-    """Of three columns: positive where they are right-handed."""
+    """The determinant of three columns: positive where they are right-handed."""
     u, v, w = columns
     x, y, z = u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]
     return x * w[0] + y * w[1] + z * w[2]

@@ -108,7 +108,7 @@ def real_angles(
     accept: float,
     doubtful: float | Array = DOUBTFUL,
 ) -> tuple[Index, Array, Index, Flags]:
-    """Those angles `about + 2 atan(t)`, about (N,) and t (N, n) complex, of which the imaginary part is
+    """The angles `about + 2 atan(t)`, about (N,) and t (N, n) complex, of which the imaginary part is
     below `accept`: as `hidden_angles` has them. With one below `doubtful` (or that of each, (N, 1)) a root
     is not clearly complex."""
     angle, off = angles_off(t, about)

@@ -50,7 +50,7 @@ def one_slide_candidates(
 def one_slide_both_candidates(
     F: Sequence[Array], T: Array, elimination: Elimination, turning: Turning
 ) -> Candidates:
-    """The same by half angles of both angles beside the hidden one."""
+    """Candidates by half angles of both angles beside the hidden one."""
     return _candidates(F, T, elimination, turning, both_angles)
 
 

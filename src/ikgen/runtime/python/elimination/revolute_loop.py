@@ -24,7 +24,7 @@ class RevoluteLoop:
     at: tuple[int, ...]
 
     def of(self, pose: Index) -> RevoluteLoop:
-        """Those of some poses."""
+        """The loops of some poses."""
         return RevoluteLoop(self.K[:, pose], self.k[:, pose], self.u[:, pose], self.at)
 
 

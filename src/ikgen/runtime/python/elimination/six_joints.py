@@ -29,7 +29,7 @@ class SixJoints:
     held: Array
 
     def of(self, pose: Index) -> SixJoints:
-        """Those of some poses."""
+        """The six joints of some poses."""
         if len(self.held) == 1:
             return self
         some = tuple(rows_of(frame, pose) for frame in self.frames)

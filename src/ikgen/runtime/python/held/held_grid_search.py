@@ -46,7 +46,7 @@ def search_grid(
 
 
 def _best_rows(arm: Arm, T: Array, preference: Preference, limits: bool) -> Solutions:
-    """Those of the grid, made better, best first."""
+    """Rows of the grid, made better, best first."""
     values, steps = _grid(arm, T, preference[1], limits)
 
     def rows_at(part: Array) -> tuple[Array, Array, Flags]:

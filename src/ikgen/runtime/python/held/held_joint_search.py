@@ -42,7 +42,7 @@ def search_interval(
 
 
 def _best_rows(joint: HeldJoint, T: Array, preference: Preference, limits: bool) -> Solutions:
-    """Those of the intervals, best first."""
+    """Rows of the intervals, best first."""
     arm = joint.arm
     tracks = tracked(joint, T, *held_range(arm, T, limits), limits)
     starts: list[Start] = []

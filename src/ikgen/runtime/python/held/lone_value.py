@@ -39,7 +39,7 @@ def lone_row(arm: Arm, T: Array, limits: bool) -> Array | None:
 
 
 def _left(arm: Arm, T: Array, q: Array) -> float:
-    """Of one row (1, dof)."""
+    """How far the row (1, dof) leaves the pose, squared."""
     return float(chord_costs(arm, T, q)[0])
 
 

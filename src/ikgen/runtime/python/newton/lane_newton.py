@@ -37,7 +37,7 @@ class Refined(NamedTuple):
 
 
 def refine_lanes(arm: Arm, chain: LaneChain, q: Array, T: Array) -> Refined:
-    """Of rows (k, dof) towards T (k, 4, 4)."""
+    """Refine rows (k, dof) towards T (k, 4, 4)."""
     q = q.T.copy()
     arrived, missed, strained = np.zeros((3, q.shape[1]), dtype=bool)
     before = np.full(q.shape[1], arm.policy.farthest_start)
@@ -109,7 +109,7 @@ def begins(
 def ends(
     policy: Policy, before: Array, size: Array, worst: Array, more: Array, pivot: Array | Single
 ) -> tuple[Flags, Flags]:
-    """The same of second steps, `more` the size of what was left of them; and which are the last."""
+    """As `begins`, of second steps, `more` the size of what was left of them; and which are the last."""
     small = _is_round_off(policy, size, worst, pivot)
     done = size**3 < policy.converged * before**2
     done &= more**2 < policy.converged * size

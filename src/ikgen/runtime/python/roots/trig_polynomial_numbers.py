@@ -99,7 +99,7 @@ class _Polynomial:
         return f, slope, bend
 
     def roots(self, low: float, high: float) -> list[float]:
-        """Those from low to high."""
+        """The roots from low to high."""
         pieces = max(math.ceil((high - low) * self.fastest / STRIDE), 1)
         step = (high - low) / pieces
         ends = [low + i * step for i in range(pieces)] + [high]

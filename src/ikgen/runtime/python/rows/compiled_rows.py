@@ -54,7 +54,7 @@ class Later:
 
 
 class CompiledSolutions(Solutions):
-    """Those that a compiled solver `found`; `why`: gives the reason where there are no rows."""
+    """Solutions that a compiled solver `found`; `why`: gives the reason where there are no rows."""
 
     __qualname__ = "Solutions"  # as which they are shown
 

@@ -13,5 +13,5 @@ __all__ = ["pairs"]
 
 @cache
 def pairs(count: int) -> tuple[Index, Index]:
-    """Of so many rows each, and each one before it."""
+    """Each of so many rows with each one before it."""
     return np.tril_indices(count, -1)

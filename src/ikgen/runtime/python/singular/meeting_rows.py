@@ -82,7 +82,7 @@ class Leads(NamedTuple):
 
 
 def both(one: Leads, other: Leads) -> Leads:
-    """Those of two."""
+    """What two found, one after the other."""
     owner = other.around.owner + len(one.starts.q)
     out: Leads = joined(one, other._replace(around=other.around._replace(owner=owner)))
     return out

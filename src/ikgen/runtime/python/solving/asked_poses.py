@@ -38,7 +38,7 @@ class Asked:
         return aims(arm, self.T[index], self.held[index])
 
     def seed(self, k: int) -> Row | None:
-        """Of one pose."""
+        """The seed of one pose."""
         return None if self.near is None else tuple(self.near[k].tolist())
 
     def starts(self, arm: Arm, turn: Array | None = None) -> Array:

@@ -64,7 +64,8 @@ class AllRows(NamedTuple):
 
 
 def closed_form(arm: Arm, T: Array, near: Array | None, held: Array) -> ClosedForm:
-    """Of poses T (N, 4, 4) with the values `near` (N, dof) of joints that they leave free."""
+    """Rows of the closed form for poses T (N, 4, 4), joints that they leave free at values `near`
+    (N, dof)."""
     start = np.zeros((len(T), len(arm.lower))) if near is None else near
     with np.errstate(all="ignore"):
         found = ClosedForm(*in_blocks(arm.branches_batch, _PART, T, start, held))
@@ -77,7 +78,7 @@ def closed_form(arm: Arm, T: Array, near: Array | None, held: Array) -> ClosedFo
 
 
 def all_rows(arm: Arm, T: Array, near: Array | None, held: Array) -> AllRows:
-    """Of poses T (N, 4, 4), as `closed_form` has them."""
+    """All rows for poses T (N, 4, 4), as `closed_form` has them."""
     own, none = closed_form(arm, T, near, held), np.zeros((len(T), 0), dtype=bool)
     if len(arm.beside) and arm.policy.beside_anywhere:
         return AllRows(own, rows_beside(arm, T, near, held))

@@ -135,7 +135,7 @@ def _take_pairs(arm: Arm, rows: _Rows) -> None:
 
 
 def _take_ends(arm: Arm, rows: _Rows, pose: Index, one: Index, other: Index) -> None:
-    """Of pairs of rows of poses (k,), on these lanes."""
+    """Take the ends of pairs of rows of poses (k,), on these lanes."""
     owner, side = np.repeat(pose, 2), np.tile([1.0, -1.0], len(pose))
     lane, aim = np.repeat(one, 2), aims(arm, rows.T, rows.held)[owner]
     start = rows.q[owner, lane]

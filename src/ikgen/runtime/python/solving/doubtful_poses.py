@@ -17,9 +17,9 @@ __all__ = ["placed_rows"]
 
 
 def placed_rows(arm: Arm, asked: Asked, limits: bool) -> list[Answer]:
-    """Of each pose. Where it leaves a joint free and the given value leads nowhere, others are tried, and
-    in the end the nearest pose's row; so too where limits leave none, but a continuum may go on inside, and
-    where all that the closed form has is singular and leads to none."""
+    """The rows of each pose, placed. Where it leaves a joint free and the given value leads nowhere, others
+    are tried, and in the end the nearest pose's row; so too where limits leave none, but a continuum may go
+    on inside, and where all that the closed form has is singular and leads to none."""
     out = [Answer() for _ in asked.T]
     left = np.arange(len(out))
     eliminated = arm.branches is None  # no joint has a value of its own then

@@ -39,7 +39,9 @@ from ikgen.runtime.python.solving.projection import nearest_row, off_by
 
 __all__ = ["One", "eliminated_answers", "held_reason", "solutions_of", "solve_pose", "sure_answer"]
 
-_SETTLED = 1e-4  # rad or m that the nearest row may be from one of its pose, where this is flat
+# rad or m: a solution of the projected pose this near to the projected row is that row; the minimum is
+# flat, so the search stops that far off
+_SETTLED = 1e-4
 
 One = tuple[list[list[float]], Row | None, Row]
 """A pose, its seed if there is one, and values of held joints."""
