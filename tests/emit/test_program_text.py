@@ -56,16 +56,16 @@ def test_loops_give_the_rows_of_the_program(refine: bool) -> None:
     module = made_module()
     if refine:
         module = replace(module, dh=replace(module.dh, deviation=(0.0, 1e-3)))
-    start = ["rows = []", "hit = False"]
-    solve = function("q0, held, t03, t13", [*start, *scalar_lines(module)], "rows, hit")
+    start = ["rows = []", "doubt = False"]
+    solve = function("q0, held, t03, t13", [*start, *scalar_lines(module)], "rows, doubt")
     for x, y in POSES:
-        rows, hit = solve([SEED, 0.0, 0.0], [HELD], x, y)
+        rows, doubt = solve([SEED, 0.0, 0.0], [HELD], x, y)
         wanted = expected(x, y)
         assert [q for q, _ in rows] == [q for q, _ in wanted]
         if wanted:
-            assert hit == wanted[0][1]
+            assert doubt == wanted[0][1]
         offs = [math.cos(q[1]) ** 2 * 1e-19 for q, _ in rows]
-        rough = [refine or hit or off > ROUGH for off in offs]
+        rough = [refine or doubt or off > ROUGH for off in offs]
         assert [flag for _, flag in rows] == rough
 
 
@@ -73,7 +73,7 @@ def test_loops_of_a_single_joint_still_make_rows() -> None:
     module = made_module()
     program = replace(module.program, outputs=module.program.outputs[:1], residuals=(), singular=())
     lines = scalar_lines(replace(module, program=program))
-    solve = function("q0, held, t03, t13", ["rows = []", "hit = False", *lines], "rows")
+    solve = function("q0, held, t03, t13", ["rows = []", "doubt = False", *lines], "rows")
     rows = solve([SEED], [HELD], *POSES[0])
     assert rows and all(len(q) == 1 and rough is False for q, rough in rows)
 

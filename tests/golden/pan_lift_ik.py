@@ -163,13 +163,14 @@ def follow(poses: Any, *, start: ArrayLike, limits: bool = True) -> Path:
 
 
 def _branches(T: Sequence[Sequence[float]], q0: Row, held: Row) -> tuple[list[tuple[Row, bool]], bool]:
-    """All closed-form solutions: rows, and whether each needs Newton steps; whether a joint was left free.
+    """All closed-form solutions, each with whether it needs Newton steps; and whether the pose leaves a doubt:
+    it leaves a joint free, or the file's geometry may have solutions there that no branch leads to.
 
     T: pose as nested lists; q0: joint values taken where a pose leaves a joint free; held: values of
     the held joints.
     """
     rows: list[tuple[Row, bool]] = []
-    hit = False
+    doubt = False
     (t00, t01, t02, t03), (t10, t11, t12, t13), (t20, t21, t22, t23), _ = T
     # the radius
     c1 = t03 / a_2
@@ -179,7 +180,7 @@ def _branches(T: Sequence[Sequence[float]], q0: Row, held: Row) -> tuple[list[tu
         if not (1e-09 > abs(error)):
             continue
         rows.append(((atan2(s1, c1), t23), False))
-    return rows, hit
+    return rows, doubt
 
 
 def _branches_batch(T: Array, q0: Array, held: Array) -> tuple[Array, _Flags, _Flags, _Flags, _Flags]:
@@ -504,7 +505,8 @@ def _near_enough(p: Array) -> _Flags:
 
 
 _Found = tuple[Row, bool]  # a solution, and whether it is one of a continuum
-_Branches = Callable[[Sequence[Sequence[float]], Row, Row], tuple[list[tuple[Row, bool]], bool]]
+_FormRow = tuple[Row, bool]  # of a closed form, and whether it needs Newton steps
+_Branches = Callable[[Sequence[Sequence[float]], Row, Row], tuple[list[_FormRow], bool]]
 _BranchesBatch = Callable[[Array, Array, Array], tuple[Array, _Flags, _Flags, _Flags, _Flags]]
 
 
@@ -3107,8 +3109,8 @@ def _certain_rows(
     start = list(near) if near is not None else [0.0] * len(arm.lower)
     for j, value in zip(arm.free, held):
         start[j] = value
-    answers, hit = arm.branches(T, tuple(start), held)
-    if hit:
+    answers, doubt = arm.branches(T, tuple(start), held)
+    if doubt:
         return None
     rows: list[Row] = [row for row, _ in answers]
     if any(rough for _, rough in answers):
@@ -3125,7 +3127,7 @@ def _certain_rows(
     return kept
 
 
-def _regular_rows(arm: _Arm, answers: list[_Found], asked: _One) -> list[Row] | None:
+def _regular_rows(arm: _Arm, answers: list[_FormRow], asked: _One) -> list[Row] | None:
     """Rows of which those that are rough are refined, each for as long as it takes."""
     T, _, held = asked
     rough = [row for row, flag in answers if flag]

@@ -93,8 +93,8 @@ def test_rough_rows_are_refined_where_they_are_regular(
         return placed_rows(*given)  # type: ignore[arg-type]
 
     def branches(*given: Any) -> Any:
-        rows, hit = arm._ARM.branches(*given)
-        return [(tuple(x + 1e-6 for x in row), k != 1) for k, (row, _) in enumerate(rows)], hit
+        rows, doubt = arm._ARM.branches(*given)
+        return [(tuple(x + 1e-6 for x in row), k != 1) for k, (row, _) in enumerate(rows)], doubt
 
     monkeypatch.setattr(pose_solving, "placed_rows", placed)
     rough = replace(arm._ARM, branches=branches)

@@ -29,7 +29,7 @@ def scalar_lines(module: SolverModule) -> list[str]:
         pad = "    " * index
         if index:
             lines.append("    " * (index - 1) + _loop(level))
-        leave = "continue" if index else "return rows, hit"
+        leave = "continue" if index else "return rows, doubt"
         for statement in level.body:
             lines += [pad + line for line in _scalar_statement(program, statement, leave)]
     pad = "    " * (len(program.levels) - 1)
@@ -43,7 +43,7 @@ def _scalar_statement(program: Program, statement: Statement, leave: str) -> lis
         return [f"if not ({expression(SCALAR, statement.condition)}):", f"    {leave}"]
     lines = [f"{statement.name} = {expression(SCALAR, statement.value)}"]
     if statement.name in program.singular:
-        lines.append(f"hit = hit or {statement.name}")
+        lines.append(f"doubt = doubt or {statement.name}")
     return lines
 
 
@@ -56,7 +56,7 @@ def _scalar_row(module: SolverModule) -> list[str]:
     if module.refine == "some":
         rough = " or ".join([*program.singular, *(f"{r} > _ROUGH" for r in program.residuals)])
     lines = [f"rows.append((({row}), {rough or 'False'}))"]
-    return [f"hit = hit or {' or '.join(program.doubts)}", *lines] if program.doubts else lines
+    return [f"doubt = doubt or {' or '.join(program.doubts)}", *lines] if program.doubts else lines
 
 
 def _loop(level: Level) -> str:

@@ -12,10 +12,20 @@ from ikgen.runtime.python.arm.solve_policy import Policy
 from ikgen.runtime.python.arm.task_interface import Task
 from ikgen.runtime.python.arrays.array_types import Array, Flags, Index, Row
 
-__all__ = ["Arm", "Around", "Branches", "BranchesBatch", "Found", "HeldAngle", "Together"]
+__all__ = [
+    "Arm",
+    "Around",
+    "Branches",
+    "BranchesBatch",
+    "FormRow",
+    "Found",
+    "HeldAngle",
+    "Together",
+]
 
 Found = tuple[Row, bool]  # a solution, and whether it is one of a continuum
-Branches = Callable[[Sequence[Sequence[float]], Row, Row], tuple[list[tuple[Row, bool]], bool]]
+FormRow = tuple[Row, bool]  # of a closed form, and whether it needs Newton steps
+Branches = Callable[[Sequence[Sequence[float]], Row, Row], tuple[list[FormRow], bool]]
 BranchesBatch = Callable[[Array, Array, Array], tuple[Array, Flags, Flags, Flags, Flags]]
 
 
@@ -65,8 +75,9 @@ class HeldAngle(Protocol):
 class Arm:
     """`free`, `free_joints`, `free_defaults`: indices, names and values of held joints. `most`: rows at
     most. `branches(T, q0, held)`: the closed form's rows for a pose, values of joints that it leaves
-    free, values of held joints, each with whether it is rough, and whether the pose left a joint free;
-    None for an elimination; `branches_batch`: in arrays. `beside`
+    free, values of held joints, each with whether it is rough; and whether the pose leaves a doubt: a joint
+    free, or solutions of the file's geometry that no branch may lead to. None for an elimination;
+    `branches_batch`: in arrays. `beside`
     (n, 4, 4): motions of the tool to poses that are solved as well. `period`: how far
     apart (rad) values of a joint are that are the same configuration, 0 where none are; `moving`: indices
     of joints that are not held.

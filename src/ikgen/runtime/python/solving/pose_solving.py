@@ -15,7 +15,7 @@ from ikgen.runtime.python.arguments.pose_arguments import one_pose
 from ikgen.runtime.python.arguments.pose_faults import nearest_pose, pose_fault, too_far
 from ikgen.runtime.python.arm.chain_kinematics import forward
 from ikgen.runtime.python.arm.held_parameters import aims, held_of
-from ikgen.runtime.python.arm.solved_arm import Arm, Found, Together
+from ikgen.runtime.python.arm.solved_arm import Arm, FormRow, Found, Together
 from ikgen.runtime.python.arrays.array_types import Array, Row
 from ikgen.runtime.python.newton.arm_newton import refined
 from ikgen.runtime.python.newton.chord_steps import chord_steps
@@ -184,8 +184,8 @@ def _certain_rows(
     start = list(near) if near is not None else [0.0] * len(arm.lower)
     for j, value in zip(arm.free, held):
         start[j] = value
-    answers, hit = arm.branches(T, tuple(start), held)
-    if hit:
+    answers, doubt = arm.branches(T, tuple(start), held)
+    if doubt:
         return None
     rows: list[Row] = [row for row, _ in answers]
     if arm.together is None and any(rough for _, rough in answers):
@@ -224,7 +224,7 @@ def _refined_together(arm: Arm, together: Together, q: Array, asked: One) -> Arr
     return q[arrived] if (arrived | missed).all() else None
 
 
-def _regular_rows(arm: Arm, answers: list[Found], asked: One) -> list[Row] | None:
+def _regular_rows(arm: Arm, answers: list[FormRow], asked: One) -> list[Row] | None:
     """Rows of which those that are rough are refined, each for as long as it takes; None where one of these
     is near a singularity."""
     T, _, held = asked
