@@ -38,6 +38,8 @@ def test_a_header_has_what_its_arm_takes_and_no_more(rounded: bool, task: str, h
     assert ("arm/whole_pose.hpp" in found) == (task == "pose") != ("arm/pose_entries.hpp" in found)
     searches = ("solving/ordered_solving", "held/held_search", "held/held_grid_search")
     assert found[-1] == f"{searches[held]}.hpp"
+    assert "solving/path_following.hpp" in found
+    assert ("held/lone_value.hpp" in found) == (held > 0)
     assert found[:2] == ["arrays/lane_angle.hpp", "solving/lane_solve.hpp"]
     assert "solving/projection.hpp" in found and "solving/single_solve.hpp" not in found
     assert not {"held/lane_elbow.hpp", "held/arm_angle_motion.hpp"} & set(found)

@@ -1046,11 +1046,11 @@ template <class Arm> struct MovingJoints {
   constexpr int operator[](int k) const noexcept { return joint[k]; }
 };
 
-template <class A> struct AllMoving : A {
+template <class Arm> struct AllMoving : Arm {
   static constexpr int kFree = 0;
   static constexpr std::array<int, 0> kFreeJoints = {};
-  static constexpr bool kHeld[A::kDof] = {}, kArmAngle = false;
-  static constexpr int kRank = A::kWholePose ? A::kFreedoms : A::kDof - A::kFree;  // what the task fixes, or less
+  static constexpr bool kHeld[Arm::kDof] = {}, kArmAngle = false;
+  static constexpr int kRank = Arm::kWholePose ? Arm::kFreedoms : Arm::kDof - Arm::kFree;  // what the task fixes, or less
 };
 
 // --- singular value ------------------------------------------------------------------------------
@@ -3045,25 +3045,205 @@ template <class Arm, template <class> class Way> struct Projection {
   }
 };
 
+// --- path following ------------------------------------------------------------------------------
+template <class Arm, class Solver> struct PathStep {
+  static constexpr int kDof = Arm::kDof, kDeepest = 24, kShallow = 9;
+  static constexpr int kMost = 1000;  // steps to a pose, where rows follow at no length
+  static constexpr double kFarthest = 0.3, kAway = 1.0, kOff = 0.2, kLeastOff = 1e-4, kJump = 0.05;
+  static constexpr double kDamping = 1e-8, kLeastDamping = 1e-14;  // where Newton steps arrive, and where they foretell
+  using Status = typename Arm::Status;
+
+  double q[kDof];
+  bool limits, crossed = false, at_singularity = false;
+  int left = kMost;
+
+  Status go_on(const Eigen::Isometry3d& before, const Eigen::Isometry3d& pose) noexcept {
+    typename Arm::Joints last;
+    double *const here = last.data(), there[kDof], expected[kDof], row[kDof];
+    std::copy_n(q, kDof, here);
+    left = kMost;
+    Status status = step(before, pose, 0);
+    if (status == Status::Ok && farthest(q, here) < kAway) return status;
+    std::copy_n(q, kDof, there);
+    std::copy_n(here, kDof, q);
+    std::copy_n(here, kDof, expected);
+    bool singular = false;
+    Status why = next_row(pose, expected, row, singular);
+    if (Arm::kFree > 0 && status == Status::Unreachable && why == Status::Unreachable) {
+      why = search(pose, last, limits, row, singular);
+      if (why == Status::Ok) status = Status::Singular;
+    }
+    if (why == Status::Ok && farthest(row, here) < kFarthest && arrive(row) == Status::Ok) {
+      crossed = true;
+      at_singularity = singular;
+      return Status::Ok;
+    }
+    std::copy_n(there, kDof, q);
+    return status == Status::Singular && why != Status::Ok ? why : status;
+  }
+
+  Status step(const Eigen::Isometry3d& before, const Eigen::Isometry3d& pose, int depth) noexcept {
+    --left;
+    double expected[kDof], row[kDof];
+    bool singular = false;
+    const bool none[kDof] = {};
+    std::copy_n(q, kDof, expected);
+    move(expected, pose, none, kLeastDamping);
+    Status status = next_row(pose, expected, row, singular);
+    if (status == Status::Ok) {
+      const double gap = farthest(row, expected), moved = farthest(row, q);
+      const bool alike = moved < kFarthest && gap < kLeastOff + kOff * moved;
+      const bool across = alike && !singular && !at_singularity && SingularValue<Arm>::between(q, row);
+      const bool follows = alike && !(across && moved > kLeastOff);
+      if (follows || (depth == kDeepest && moved < kJump)) {
+        crossed = crossed || singular || across || !follows;
+        at_singularity = singular;
+        return arrive(row);
+      }
+      status = Status::Singular;
+    } else if (depth >= kShallow) {
+      return status;
+    }
+    if (depth == kDeepest || left < 0) return status;
+    const Eigen::Isometry3d middle = between(before, pose);
+    const Status first = step(before, middle, depth + 1);
+    return first == Status::Ok ? step(middle, pose, depth + 1) : first;
+  }
+
+  Status begin(const Eigen::Isometry3d& pose, const typename Arm::Joints& start) noexcept {
+    std::copy_n(start.data(), kDof, q);
+    return search(pose, start, limits, q, crossed);
+  }
+
+ private:
+  static Status search(const Eigen::Isometry3d& pose, const typename Arm::Joints& nearby, bool limits, double* row,
+                       bool& singular) noexcept {
+    typename Arm::Solutions found;
+    typename Arm::SearchOptions options;
+    options.seed = &nearby;
+    options.limits = limits;
+    Solver::search(pose, options, found);
+    if (found.count > 0) {
+      std::copy_n(found.q.data()->data(), kDof, row);
+      singular = found.singular.data()[0];
+    }
+    return found.status;
+  }
+
+  static double farthest(const double* a, const double* b) noexcept {
+    double most = 0.0;
+    for (int j = 0; j < kDof; ++j) most = std::max(most, std::abs(a[j] - b[j]));
+    return most;
+  }
+
+  Status arrive(const double* row) noexcept {
+    for (int j = 0; j < kDof && limits; ++j)
+      if (!(row[j] >= Arm::kLower.data()[j] - Arm::Policy::kLimitTolerance && row[j] <= Arm::kUpper.data()[j] + Arm::Policy::kLimitTolerance))
+        return Status::Limits;
+    for (int j = 0; j < kDof; ++j)
+      q[j] = limits ? std::min(std::max(row[j], Arm::kLower.data()[j]), Arm::kUpper.data()[j]) : row[j];
+    return Status::Ok;
+  }
+
+  static double move(double* at, const Eigen::Isometry3d& pose, const bool* stopped, double damping) noexcept {
+    PoseError<AllMoving<Arm>> here(at, HeldAim<AllMoving<Arm>>(pose));
+    constexpr int n = PoseError<AllMoving<Arm>>::kCount;
+    const double worst = here.largest();
+    double N[n][n];
+    for (auto& row : here.slope)
+      for (int j = 0; j < kDof; ++j) row[j] = stopped[j] ? 0.0 : row[j];
+    for (int a = 0; a < n; ++a)
+      for (int b = 0; b <= a; ++b) {
+        N[a][b] = a == b ? damping : 0.0;
+        for (int j = 0; j < kDof; ++j) N[a][b] += here.slope[a][j] * here.slope[b][j];
+      }
+    factor(N);
+    substitute(N, here.error);
+    for (int j = 0; j < kDof; ++j) {
+      double step = 0.0;
+      for (int a = 0; a < n; ++a) step += here.slope[a][j] * here.error[a];
+      at[j] += std::min(std::max(step, -1.0), 1.0);
+    }
+    return worst;
+  }
+
+  Status next_row(const Eigen::Isometry3d& pose, double* expected, double* row, bool& singular) const noexcept {
+    return closed_form(pose, q, expected, row, singular);
+  }
+
+  static Status closed_form(const Eigen::Isometry3d& pose, const double* nearby, const double* expected, double* row,
+                            bool& singular) noexcept {
+    typename Arm::Options options;
+    typename Arm::Joints seed;
+    std::copy_n(nearby, kDof, seed.data());
+    options.seed = &seed;
+    options.limits = false;
+    typename Arm::Solutions found;
+    Solver::solve(pose, options, found);
+    double least = kInfinity;
+    for (int k = 0; k < found.count; ++k) {
+      const double gap = farthest(found.q.data()[k].data(), expected);
+      if (!(gap < least)) continue;
+      least = gap;
+      std::copy_n(found.q.data()[k].data(), kDof, row);
+      singular = found.singular.data()[k];
+    }
+    return found.status;
+  }
+
+  static Eigen::Isometry3d between(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) noexcept {
+    Eigen::Isometry3d out = a;
+    out.linear() = Eigen::Quaterniond(a.linear()).slerp(0.5, Eigen::Quaterniond(b.linear())).toRotationMatrix();
+    out.translation() = 0.5 * (a.translation() + b.translation());
+    return out;
+  }
+};
+
+template <class Arm, class Solver, class Walk>
+inline Walk follow_poses(const Eigen::Isometry3d* poses, std::ptrdiff_t count, const typename Arm::Joints& start, bool limits,
+                         typename Arm::Joints* q, bool* singular) noexcept {
+  using Status = typename Arm::Status;
+  Walk out;
+  PathStep<Arm, Solver> walk;
+  walk.limits = limits;
+  Eigen::Isometry3d before;
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    Eigen::Isometry3d pose = poses[i];
+    walk.crossed = false;
+    if (!PoseReading<Arm>::clean(pose)) {
+      out.status = PoseReading<Arm>::refused(pose);
+    } else {
+      out.status = i > 0 ? walk.go_on(before, pose) : walk.begin(pose, start);
+    }
+    if (out.status != Status::Ok) return out;
+    std::copy_n(walk.q, Arm::kDof, q[i].data());
+    if (singular) singular[i] = walk.crossed;
+    out.reached = i + 1;
+    before = pose;
+  }
+  out.status = Status::Ok;
+  return out;
+}
+
 // --- least singular value ------------------------------------------------------------------------
-template <class A, int N> struct LeastSingularValue {
+template <class Arm, int N> struct LeastSingularValue {
   using Pack = Lanes<N>;
 
-  static Pack of(const Pack (&q)[A::kDof]) noexcept {
-    Pack J[6][A::kDof], slope[kRows][A::kDof], S[kOrder][kOrder];
-    const FrameOf<Pack> T = MotionChain<AllMoving<A>>::forward(q, J);
-    A::Task::slope(T, J, slope);
+  static Pack of(const Pack (&q)[Arm::kDof]) noexcept {
+    Pack J[6][Arm::kDof], slope[kRows][Arm::kDof], S[kOrder][kOrder];
+    const FrameOf<Pack> T = MotionChain<AllMoving<Arm>>::forward(q, J);
+    Arm::Task::slope(T, J, slope);
     for (int a = 0; a < kRows; ++a)
-      if (A::kWholePose ? a < 3 : A::kRead[a][1] == 3)
-        for (Pack& x : slope[a]) x = A::kSize * x;
+      if (Arm::kWholePose ? a < 3 : Arm::kRead[a][1] == 3)
+        for (Pack& x : slope[a]) x = Arm::kSize * x;
     for (int a = 0; a < kOrder; ++a)
       for (int b = 0; b <= a; ++b) {
         S[a][b] = spread<N>(0.0);
-        for (int k = 0; k < (kByRows ? A::kDof : kRows); ++k)
+        for (int k = 0; k < (kByRows ? Arm::kDof : kRows); ++k)
           S[a][b] = S[a][b] + (kByRows ? slope[a][k] * slope[b][k] : slope[k][a] * slope[k][b]);
         S[b][a] = S[a][b];
       }
-    if constexpr (kDependent) A::Task::fill(T, kFar, S);
+    if constexpr (kDependent) Arm::Task::fill(T, kFar, S);
     if constexpr (kInPlane) return sqrt(max(eigenvalue<kOrder - kRank>(S), 0.0));
     Pack diagonal[kOrder], squares[kOrder];
     reduce(S, diagonal, squares);
@@ -3071,10 +3251,10 @@ template <class A, int N> struct LeastSingularValue {
   }
 
  private:
-  static constexpr int kRows = A::Task::kCount, kLess = A::kDof < kRows ? A::kDof : kRows, kSteps = 40;
-  static constexpr int kRank = AllMoving<A>::kRank;
+  static constexpr int kRows = Arm::Task::kCount, kLess = Arm::kDof < kRows ? Arm::kDof : kRows, kSteps = 40;
+  static constexpr int kRank = AllMoving<Arm>::kRank;
   static constexpr bool kInPlane =  // all joints move fewer freedoms
-      kRank < kLess && (A::kWholePose || kRank < kRows - A::Columns::kRelations);
+      kRank < kLess && (Arm::kWholePose || kRank < kRows - Arm::Columns::kRelations);
   static constexpr bool kDependent = !kInPlane && kRank < kLess;  // rows
   static constexpr int kOrder = kDependent ? kRows : kLess;
   static constexpr bool kByRows = kOrder == kRows;
@@ -3139,16 +3319,16 @@ template <class A, int N> struct LeastSingularValue {
 };
 
 // --- row preference ------------------------------------------------------------------------------
-template <class A> struct RowPreference {
-  using Prefer = typename A::Prefer;
-  typename A::Joints wanted;
-  double weight[A::kDof];
-  typename A::Options options;
+template <class Arm> struct RowPreference {
+  using Prefer = typename Arm::Prefer;
+  typename Arm::Joints wanted;
+  double weight[Arm::kDof];
+  typename Arm::Options options;
   Prefer prefer;
 
-  RowPreference(const typename A::Joints* seed, Prefer kind, bool limits) noexcept : prefer(kind) {
-    for (int j = 0; j < A::kDof; ++j) {
-      const double low = A::kLower.data()[j], high = A::kUpper.data()[j];
+  RowPreference(const typename Arm::Joints* seed, Prefer kind, bool limits) noexcept : prefer(kind) {
+    for (int j = 0; j < Arm::kDof; ++j) {
+      const double low = Arm::kLower.data()[j], high = Arm::kUpper.data()[j];
       const bool bounded = high - low < kInfinity, nearby = kind == Prefer::Near && seed;
       const double half = std::max(0.5 * (high - low), 1e-6);
       wanted.data()[j] = bounded && !nearby ? 0.5 * (low + high) : seed ? seed->data()[j] : 0.0;
@@ -3160,217 +3340,37 @@ template <class A> struct RowPreference {
   RowPreference(const RowPreference&) = delete;
 
   bool place(double* q) const noexcept {
-    for (int j = 0; j < A::kDof; ++j)
-      if (A::kHeld[j] && A::kPeriod[j] > 0.0 && !(A::kUpper.data()[j] - A::kLower.data()[j] < kInfinity))
-        q[j] += A::kPeriod[j] * std::nearbyint((wanted.data()[j] - q[j]) / A::kPeriod[j]);
-    return SolutionRows<A>::place(q, options);
+    for (int j = 0; j < Arm::kDof; ++j)
+      if (Arm::kHeld[j] && Arm::kPeriod[j] > 0.0 && !(Arm::kUpper.data()[j] - Arm::kLower.data()[j] < kInfinity))
+        q[j] += Arm::kPeriod[j] * std::nearbyint((wanted.data()[j] - q[j]) / Arm::kPeriod[j]);
+    return SolutionRows<Arm>::place(q, options);
   }
 
   double cost(const double* q) const noexcept {
     if (prefer == Prefer::Dexterous) return -smallest_singular_value(q);
     double sum = 0.0;
-    for (int j = 0; j < A::kDof; ++j) sum += weight[j] * (q[j] - wanted.data()[j]) * (q[j] - wanted.data()[j]);
+    for (int j = 0; j < Arm::kDof; ++j) sum += weight[j] * (q[j] - wanted.data()[j]) * (q[j] - wanted.data()[j]);
     return sum;
   }
 
   static double smallest_singular_value(const double* q) noexcept {
-    Lanes<1> at[A::kDof];
-    for (int j = 0; j < A::kDof; ++j) at[j] = {q[j]};
-    return LeastSingularValue<A, 1>::of(at).v;
+    Lanes<1> at[Arm::kDof];
+    for (int j = 0; j < Arm::kDof; ++j) at[j] = {q[j]};
+    return LeastSingularValue<Arm, 1>::of(at).v;
   }
 };
-
-// --- path following ------------------------------------------------------------------------------
-template <class A, class Solver> struct PathStep {
-  static constexpr int kDof = A::kDof, kDeepest = 24, kShallow = 9;
-  static constexpr int kMost = 1000;  // steps to a pose, where rows follow at no length
-  static constexpr double kFarthest = 0.3, kAway = 1.0, kOff = 0.2, kLeastOff = 1e-4, kJump = 0.05;
-  static constexpr double kDamping = 1e-8, kLeastDamping = 1e-14;  // where Newton steps arrive, and where they foretell
-  using Status = typename A::Status;
-
-  double q[kDof];
-  bool limits, crossed = false, at_singularity = false;
-  int left = kMost;
-
-  Status go_on(const Eigen::Isometry3d& before, const Eigen::Isometry3d& pose) noexcept {
-    typename A::Joints last;
-    double *const here = last.data(), there[kDof], expected[kDof], row[kDof];
-    std::copy_n(q, kDof, here);
-    left = kMost;
-    Status status = step(before, pose, 0);
-    if (status == Status::Ok && farthest(q, here) < kAway) return status;
-    std::copy_n(q, kDof, there);
-    std::copy_n(here, kDof, q);
-    std::copy_n(here, kDof, expected);
-    bool singular = false;
-    Status why = next_row(pose, expected, row, singular);
-    if (A::kFree > 0 && status == Status::Unreachable && why == Status::Unreachable) {
-      why = search(pose, last, limits, row, singular);
-      if (why == Status::Ok) status = Status::Singular;
-    }
-    if (why == Status::Ok && farthest(row, here) < kFarthest && arrive(row) == Status::Ok) {
-      crossed = true;
-      at_singularity = singular;
-      return Status::Ok;
-    }
-    std::copy_n(there, kDof, q);
-    return status == Status::Singular && why != Status::Ok ? why : status;
-  }
-
-  Status step(const Eigen::Isometry3d& before, const Eigen::Isometry3d& pose, int depth) noexcept {
-    --left;
-    double expected[kDof], row[kDof];
-    bool singular = false;
-    const bool none[kDof] = {};
-    std::copy_n(q, kDof, expected);
-    move(expected, pose, none, kLeastDamping);
-    Status status = next_row(pose, expected, row, singular);
-    if (status == Status::Ok) {
-      const double gap = farthest(row, expected), moved = farthest(row, q);
-      const bool alike = moved < kFarthest && gap < kLeastOff + kOff * moved;
-      const bool across = alike && !singular && !at_singularity && SingularValue<A>::between(q, row);
-      const bool follows = alike && !(across && moved > kLeastOff);
-      if (follows || (depth == kDeepest && moved < kJump)) {
-        crossed = crossed || singular || across || !follows;
-        at_singularity = singular;
-        return arrive(row);
-      }
-      status = Status::Singular;
-    } else if (depth >= kShallow) {
-      return status;
-    }
-    if (depth == kDeepest || left < 0) return status;
-    const Eigen::Isometry3d middle = between(before, pose);
-    const Status first = step(before, middle, depth + 1);
-    return first == Status::Ok ? step(middle, pose, depth + 1) : first;
-  }
-
-  Status begin(const Eigen::Isometry3d& pose, const typename A::Joints& start) noexcept {
-    std::copy_n(start.data(), kDof, q);
-    return search(pose, start, limits, q, crossed);
-  }
-
- private:
-  static Status search(const Eigen::Isometry3d& pose, const typename A::Joints& nearby, bool limits, double* row,
-                       bool& singular) noexcept {
-    typename A::Solutions found;
-    typename A::SearchOptions options;
-    options.seed = &nearby;
-    options.limits = limits;
-    Solver::search(pose, options, found);
-    if (found.count > 0) {
-      std::copy_n(found.q.data()->data(), kDof, row);
-      singular = found.singular.data()[0];
-    }
-    return found.status;
-  }
-
-  static double farthest(const double* a, const double* b) noexcept {
-    double most = 0.0;
-    for (int j = 0; j < kDof; ++j) most = std::max(most, std::abs(a[j] - b[j]));
-    return most;
-  }
-
-  Status arrive(const double* row) noexcept {
-    for (int j = 0; j < kDof && limits; ++j)
-      if (!(row[j] >= A::kLower.data()[j] - A::Policy::kLimitTolerance && row[j] <= A::kUpper.data()[j] + A::Policy::kLimitTolerance))
-        return Status::Limits;
-    for (int j = 0; j < kDof; ++j)
-      q[j] = limits ? std::min(std::max(row[j], A::kLower.data()[j]), A::kUpper.data()[j]) : row[j];
-    return Status::Ok;
-  }
-
-  static double move(double* at, const Eigen::Isometry3d& pose, const bool* stopped, double damping) noexcept {
-    PoseError<AllMoving<A>> here(at, HeldAim<AllMoving<A>>(pose));
-    constexpr int n = PoseError<AllMoving<A>>::kCount;
-    const double worst = here.largest();
-    double N[n][n];
-    for (auto& row : here.slope)
-      for (int j = 0; j < kDof; ++j) row[j] = stopped[j] ? 0.0 : row[j];
-    for (int a = 0; a < n; ++a)
-      for (int b = 0; b <= a; ++b) {
-        N[a][b] = a == b ? damping : 0.0;
-        for (int j = 0; j < kDof; ++j) N[a][b] += here.slope[a][j] * here.slope[b][j];
-      }
-    factor(N);
-    substitute(N, here.error);
-    for (int j = 0; j < kDof; ++j) {
-      double step = 0.0;
-      for (int a = 0; a < n; ++a) step += here.slope[a][j] * here.error[a];
-      at[j] += std::min(std::max(step, -1.0), 1.0);
-    }
-    return worst;
-  }
-
-  Status next_row(const Eigen::Isometry3d& pose, double* expected, double* row, bool& singular) const noexcept {
-    return closed_form(pose, q, expected, row, singular);
-  }
-
-  static Status closed_form(const Eigen::Isometry3d& pose, const double* nearby, const double* expected, double* row,
-                            bool& singular) noexcept {
-    typename A::Options options;
-    typename A::Joints seed;
-    std::copy_n(nearby, kDof, seed.data());
-    options.seed = &seed;
-    options.limits = false;
-    typename A::Solutions found;
-    Solver::solve(pose, options, found);
-    double least = kInfinity;
-    for (int k = 0; k < found.count; ++k) {
-      const double gap = farthest(found.q.data()[k].data(), expected);
-      if (!(gap < least)) continue;
-      least = gap;
-      std::copy_n(found.q.data()[k].data(), kDof, row);
-      singular = found.singular.data()[k];
-    }
-    return found.status;
-  }
-
-  static Eigen::Isometry3d between(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) noexcept {
-    Eigen::Isometry3d out = a;
-    out.linear() = Eigen::Quaterniond(a.linear()).slerp(0.5, Eigen::Quaterniond(b.linear())).toRotationMatrix();
-    out.translation() = 0.5 * (a.translation() + b.translation());
-    return out;
-  }
-};
-
-template <class A, class Solver, class Walk>
-inline Walk follow_poses(const Eigen::Isometry3d* poses, std::ptrdiff_t count, const typename A::Joints& start, bool limits,
-                         typename A::Joints* q, bool* singular) noexcept {
-  using Status = typename A::Status;
-  Walk out;
-  PathStep<A, Solver> walk;
-  walk.limits = limits;
-  Eigen::Isometry3d before;
-  for (std::ptrdiff_t i = 0; i < count; ++i) {
-    Eigen::Isometry3d pose = poses[i];
-    walk.crossed = false;
-    if (!PoseReading<A>::clean(pose)) {
-      out.status = PoseReading<A>::refused(pose);
-    } else {
-      out.status = i > 0 ? walk.go_on(before, pose) : walk.begin(pose, start);
-    }
-    if (out.status != Status::Ok) return out;
-    std::copy_n(walk.q, A::kDof, q[i].data());
-    if (singular) singular[i] = walk.crossed;
-    out.reached = i + 1;
-    before = pose;
-  }
-  out.status = Status::Ok;
-  return out;
-}
 
 // --- ordered solving -----------------------------------------------------------------------------
-template <class A, class Solver>
-inline void order_rows(const Eigen::Isometry3d& pose, const typename A::Joints* seed, typename A::Prefer prefer, bool limits,
-                       typename A::Solutions& out) noexcept {
-  const RowPreference<A> preference(seed, prefer, limits);
-  typename A::Options options;
+template <class Arm, class Solver>
+inline void order_rows(const Eigen::Isometry3d& pose, const typename Arm::Joints* seed, typename Arm::Prefer prefer, bool limits,
+                       typename Arm::Solutions& out) noexcept {
+  const RowPreference<Arm> preference(seed, prefer, limits);
+  typename Arm::Options options;
   options.seed = seed;
   options.limits = limits;
   Solver::solve(pose, options, out);
-  for (int k = 0; k < out.count; ++k) preference.place(SolutionRows<A>::row(out, k));
-  SolutionRows<A>::sort(out, [&](const double* q) noexcept { return preference.cost(q); });
+  for (int k = 0; k < out.count; ++k) preference.place(SolutionRows<Arm>::row(out, k));
+  SolutionRows<Arm>::sort(out, [&](const double* q) noexcept { return preference.cost(q); });
 }
 
 // --- this arm -------------------------------------------------------------------------------------

@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 from tests.support.routines import compiled_header, feed
 from tests.support.runtime_files import HEADERS, chains, included
 
+from ikgen.emit.cpp.cpp_definitions import definitions, words
+from ikgen.emit.cpp.cpp_tokens import masked
 from ikgen.emit.cpp.header_bundle import RUNTIME, bundle
 
 Array = NDArray[np.float64]
@@ -93,6 +95,24 @@ def test_no_name_is_a_macro_of_windows() -> None:
         code = re.sub(r'//.*|"[^"\n]*"|\{\{.*?\}\}|\{%.*?%\}', "", file.read_text(encoding="utf-8"))
         found = re.findall(r"\b(?:far|hyper|interface|near|pascal|small)\b", code)
         assert not found, f"{file}: {found}"
+
+
+def defined(header: str) -> set[str]:
+    """Names that a header defines, with those of members and of an inner namespace."""
+    text = (RUNTIME / header).read_text(encoding="utf-8")
+    _, _, inside = text.partition("\nnamespace ikgen_runtime {\n")
+    body, _, _ = inside.rpartition("}  // namespace ikgen_runtime")
+    return {
+        name for one in definitions(body) for part in (one, *one.members) for name in part.names
+    }
+
+
+@pytest.mark.parametrize("header", HEADERS)
+def test_a_header_uses_a_name_of_each_that_it_includes(header: str) -> None:
+    text = (RUNTIME / header).read_text(encoding="utf-8")
+    used = words(masked(text))
+    for other in re.findall(r'#include "(.+)"', text):
+        assert defined(other) & used, f"nothing of {other}"
 
 
 @pytest.mark.parametrize("header", HEADERS)

@@ -183,6 +183,7 @@ def _headers(module: SolverModule) -> list[str]:
     needed += ["held/displacement.hpp"] * bool(module.beside)
     task = "arm/whole_pose.hpp" if module.reads.whole_pose else "arm/pose_entries.hpp"
     needed += [task, "arguments/pose_solver.hpp", "solving/projection.hpp"]
+    needed += ["solving/path_following.hpp", *["held/lone_value.hpp"] * bool(module.held)]
     searches = ("solving/ordered_solving.hpp", "held/held_search.hpp", "held/held_grid_search.hpp")
     return [*needed, searches[min(len(module.held), 2)]]
 

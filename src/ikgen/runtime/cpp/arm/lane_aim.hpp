@@ -1,8 +1,9 @@
 // What rows in lanes are refined towards beside the pose.
 #pragma once
 
-#include "arm/held_aim.hpp"
-#include "arrays/lane_sines.hpp"
+#include <array>
+
+#include "arrays/lanes.hpp"
 
 namespace ikgen_runtime {
 

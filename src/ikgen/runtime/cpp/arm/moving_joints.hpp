@@ -17,11 +17,11 @@ template <class Arm> struct MovingJoints {
 };
 
 // An arm all of whose joints move.
-template <class A> struct AllMoving : A {
+template <class Arm> struct AllMoving : Arm {
   static constexpr int kFree = 0;
   static constexpr std::array<int, 0> kFreeJoints = {};
-  static constexpr bool kHeld[A::kDof] = {}, kArmAngle = false;
-  static constexpr int kRank = A::kWholePose ? A::kFreedoms : A::kDof - A::kFree;  // what the task fixes, or less
+  static constexpr bool kHeld[Arm::kDof] = {}, kArmAngle = false;
+  static constexpr int kRank = Arm::kWholePose ? Arm::kFreedoms : Arm::kDof - Arm::kFree;  // what the task fixes, or less
 };
 
 }  // namespace ikgen_runtime

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "elimination/general_6r_resultant.hpp"
 #include "elimination/coupled_lanes.hpp"
 #include "elimination/general_6r_search.hpp"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "elimination/general_6r_arcs.hpp"
-#include "elimination/general_6r_resultant.hpp"
+#include "elimination/general_6r_null_space.hpp"
 
 namespace ikgen_runtime {
 

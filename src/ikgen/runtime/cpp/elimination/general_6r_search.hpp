@@ -1,5 +1,6 @@
 #pragma once
 
+#include "elimination/general_6r_resultant.hpp"
 #include "elimination/general_6r_candidate.hpp"
 #include "elimination/general_6r_newton.hpp"
 #include "elimination/general_6r_solutions.hpp"

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "elimination/general_6r_branches.hpp"
+#include "elimination/general_6r_frames.hpp"
 
 namespace ikgen_runtime {
 

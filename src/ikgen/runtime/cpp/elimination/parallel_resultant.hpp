@@ -1,5 +1,6 @@
 #pragma once
 
+#include "elimination/general_6r_null_space.hpp"
 #include "elimination/parallel_links.hpp"
 #include "arrays/small_matrix.hpp"
 

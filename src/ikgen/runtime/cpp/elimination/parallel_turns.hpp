@@ -1,5 +1,6 @@
 #pragma once
 
+#include "elimination/general_6r_branches.hpp"
 #include "elimination/parallel_resultant.hpp"
 
 namespace ikgen_runtime {

@@ -1,9 +1,10 @@
 // Rows that are better than those beside them on a grid of several held joints' values, each made better by steps of these.
 #pragma once
 
-#include "held/lone_value.hpp"
 #include "held/slide_range.hpp"
 #include "held/values_descent.hpp"
+#include "rows/row_pair.hpp"
+#include "rows/singular_value.hpp"
 
 namespace ikgen_runtime {
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "held/held_descent.hpp"
-#include "held/lone_value.hpp"
 #include "held/sample_costs.hpp"
 #include "held/self_motion.hpp"
 

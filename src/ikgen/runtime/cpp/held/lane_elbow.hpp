@@ -3,6 +3,7 @@
 
 #include "held/arm_angle.hpp"
 #include "arm/lane_aim.hpp"
+#include "arrays/lane_sines.hpp"
 #include "rows/lane_rows.hpp"
 
 namespace ikgen_runtime {

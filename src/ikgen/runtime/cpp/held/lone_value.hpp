@@ -28,7 +28,7 @@ template <class Arm> struct LoneValue {
 };
 
 // Where a search found no row, the best one at the values of what is held that such a configuration has. Solver: as for
-// PathStep.
+// take_seeds_row.
 template <class Arm, class Solver>
 inline void take_lone_row(const Eigen::Isometry3d& pose, const RowPreference<Arm>& preference, typename Arm::Solutions& out) noexcept {
   typename Arm::Joints q;
@@ -37,7 +37,7 @@ inline void take_lone_row(const Eigen::Isometry3d& pose, const RowPreference<Arm
 }
 
 // Where self_motion found no interval, one without width, at the value that such a configuration has. Solver: as for
-// PathStep.
+// take_seeds_row.
 template <class Arm, class Solver>
 inline void take_lone_value(const Eigen::Isometry3d& pose, bool limits, typename Arm::Intervals& out) noexcept {
   typename Arm::Joints q;

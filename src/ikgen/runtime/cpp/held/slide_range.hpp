@@ -5,8 +5,8 @@
 #include <cmath>
 #include <utility>
 
-#include "arm/joint_range.hpp"
 #include "arm/motion_chain.hpp"
+#include "arrays/constants.hpp"
 
 namespace ikgen_runtime {
 

@@ -4,12 +4,11 @@
 // held, and folds, run aslant of the values.
 #pragma once
 
-#include "rows/row_pair.hpp"
 #include "rows/row_preference.hpp"
 
 namespace ikgen_runtime {
 
-// Arm: as for RowPreference and RowPair; Solver: as for PathStep.
+// Arm: as for RowPreference; Solver: solve(pose, options, out).
 template <class Arm, class Solver> struct ValuesDescent {
   static constexpr int kFree = Arm::kFree, kSweeps = 100;
   static constexpr double kLeastStep = 1e-10;  // rad or m

@@ -3,31 +3,33 @@
 
 #include <algorithm>
 
+#include "arm/motion_chain.hpp"
 #include "arm/moving_joints.hpp"
-#include "arm/pose_error.hpp"
+#include "arrays/lanes.hpp"
+#include "arrays/small_matrix.hpp"
 
 namespace ikgen_runtime {
 
-// A: as for PoseError. Rows of lengths are not over the arm's size.
-template <class A, int N> struct LeastSingularValue {
+// Arm: as for PoseError. Rows of lengths are not over the arm's size.
+template <class Arm, int N> struct LeastSingularValue {
   using Pack = Lanes<N>;
 
   // From the least eigenvalue of J J^T, or of J^T J where that is smaller.
-  static Pack of(const Pack (&q)[A::kDof]) noexcept {
-    Pack J[6][A::kDof], slope[kRows][A::kDof], S[kOrder][kOrder];
-    const FrameOf<Pack> T = MotionChain<AllMoving<A>>::forward(q, J);
-    A::Task::slope(T, J, slope);
+  static Pack of(const Pack (&q)[Arm::kDof]) noexcept {
+    Pack J[6][Arm::kDof], slope[kRows][Arm::kDof], S[kOrder][kOrder];
+    const FrameOf<Pack> T = MotionChain<AllMoving<Arm>>::forward(q, J);
+    Arm::Task::slope(T, J, slope);
     for (int a = 0; a < kRows; ++a)
-      if (A::kWholePose ? a < 3 : A::kRead[a][1] == 3)
-        for (Pack& x : slope[a]) x = A::kSize * x;
+      if (Arm::kWholePose ? a < 3 : Arm::kRead[a][1] == 3)
+        for (Pack& x : slope[a]) x = Arm::kSize * x;
     for (int a = 0; a < kOrder; ++a)
       for (int b = 0; b <= a; ++b) {
         S[a][b] = spread<N>(0.0);
-        for (int k = 0; k < (kByRows ? A::kDof : kRows); ++k)
+        for (int k = 0; k < (kByRows ? Arm::kDof : kRows); ++k)
           S[a][b] = S[a][b] + (kByRows ? slope[a][k] * slope[b][k] : slope[k][a] * slope[k][b]);
         S[b][a] = S[a][b];
       }
-    if constexpr (kDependent) A::Task::fill(T, kFar, S);
+    if constexpr (kDependent) Arm::Task::fill(T, kFar, S);
     if constexpr (kInPlane) return sqrt(max(eigenvalue<kOrder - kRank>(S), 0.0));
     Pack diagonal[kOrder], squares[kOrder];
     reduce(S, diagonal, squares);
@@ -38,8 +40,8 @@ template <class A, int N> struct LeastSingularValue {
   template <class Row> static void of_rows(int count, const Row& row, double* out) noexcept {
     for (int k = 0; k < count; k += N) {
       double values[N];
-      Pack q[A::kDof];
-      for (int j = 0; j < A::kDof; ++j) {
+      Pack q[Arm::kDof];
+      for (int j = 0; j < Arm::kDof; ++j) {
         for (int i = 0; i < N; ++i) values[i] = row(k + i < count ? k + i : k)[j];
         q[j] = load<N>(values);
       }
@@ -49,10 +51,10 @@ template <class A, int N> struct LeastSingularValue {
   }
 
  private:
-  static constexpr int kRows = A::Task::kCount, kLess = A::kDof < kRows ? A::kDof : kRows, kSteps = 40;
-  static constexpr int kRank = AllMoving<A>::kRank;
+  static constexpr int kRows = Arm::Task::kCount, kLess = Arm::kDof < kRows ? Arm::kDof : kRows, kSteps = 40;
+  static constexpr int kRank = AllMoving<Arm>::kRank;
   static constexpr bool kInPlane =  // all joints move fewer freedoms
-      kRank < kLess && (A::kWholePose || kRank < kRows - A::Columns::kRelations);
+      kRank < kLess && (Arm::kWholePose || kRank < kRows - Arm::Columns::kRelations);
   static constexpr bool kDependent = !kInPlane && kRank < kLess;  // rows
   static constexpr int kOrder = kDependent ? kRows : kLess;
   static constexpr bool kByRows = kOrder == kRows;

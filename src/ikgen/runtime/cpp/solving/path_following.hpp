@@ -12,13 +12,13 @@
 
 namespace ikgen_runtime {
 
-// A: as for PoseError and SingularValue; Solver: solve(pose, options, out), search(pose, seed, limits, out).
-template <class A, class Solver> struct PathStep {
-  static constexpr int kDof = A::kDof, kDeepest = 24, kShallow = 9;
+// Arm: as for PoseError and SingularValue; Solver: solve(pose, options, out), search(pose, options, out).
+template <class Arm, class Solver> struct PathStep {
+  static constexpr int kDof = Arm::kDof, kDeepest = 24, kShallow = 9;
   static constexpr int kMost = 1000;  // steps to a pose, where rows follow at no length
   static constexpr double kFarthest = 0.3, kAway = 1.0, kOff = 0.2, kLeastOff = 1e-4, kJump = 0.05;
   static constexpr double kDamping = 1e-8, kLeastDamping = 1e-14;  // where Newton steps arrive, and where they foretell
-  using Status = typename A::Status;
+  using Status = typename Arm::Status;
 
   double q[kDof];
   bool limits, crossed = false, at_singularity = false;
@@ -27,7 +27,7 @@ template <class A, class Solver> struct PathStep {
   // From a pose to the next; where halved steps lead far away or nowhere, as beside a singularity, to a row next to the
   // last one if there is one: of arms with held joints also where these have other values than the shortest motion leads to.
   Status go_on(const Eigen::Isometry3d& before, const Eigen::Isometry3d& pose) noexcept {
-    typename A::Joints last;
+    typename Arm::Joints last;
     double *const here = last.data(), there[kDof], expected[kDof], row[kDof];
     std::copy_n(q, kDof, here);
     left = kMost;
@@ -38,7 +38,7 @@ template <class A, class Solver> struct PathStep {
     std::copy_n(here, kDof, expected);
     bool singular = false;
     Status why = next_row(pose, expected, row, singular);
-    if (A::kFree > 0 && status == Status::Unreachable && why == Status::Unreachable) {
+    if (Arm::kFree > 0 && status == Status::Unreachable && why == Status::Unreachable) {
       why = search(pose, last, limits, row, singular);
       if (why == Status::Ok) status = Status::Singular;
     }
@@ -63,7 +63,7 @@ template <class A, class Solver> struct PathStep {
     if (status == Status::Ok) {
       const double gap = farthest(row, expected), moved = farthest(row, q);
       const bool alike = moved < kFarthest && gap < kLeastOff + kOff * moved;
-      const bool across = alike && !singular && !at_singularity && SingularValue<A>::between(q, row);
+      const bool across = alike && !singular && !at_singularity && SingularValue<Arm>::between(q, row);
       const bool follows = alike && !(across && moved > kLeastOff);
       if (follows || (depth == kDeepest && moved < kJump)) {
         crossed = crossed || singular || across || !follows;
@@ -81,9 +81,9 @@ template <class A, class Solver> struct PathStep {
   }
 
   // To the row next to the start, if the arm has held joints and there is one, or the best that a search finds.
-  Status begin(const Eigen::Isometry3d& pose, const typename A::Joints& start) noexcept {
+  Status begin(const Eigen::Isometry3d& pose, const typename Arm::Joints& start) noexcept {
     std::copy_n(start.data(), kDof, q);
-    if constexpr (A::kFree > 0) {
+    if constexpr (Arm::kFree > 0) {
       double row[kDof], expected[kDof];
       std::copy_n(q, kDof, expected);
       if (unstopped(pose, expected, row, crossed) == Status::Ok && farthest(row, q) < 0.1 && arrive(row) == Status::Ok) return Status::Ok;
@@ -93,10 +93,10 @@ template <class A, class Solver> struct PathStep {
 
  private:
   // The row that a search finds nearest to joint values.
-  static Status search(const Eigen::Isometry3d& pose, const typename A::Joints& nearby, bool limits, double* row,
+  static Status search(const Eigen::Isometry3d& pose, const typename Arm::Joints& nearby, bool limits, double* row,
                        bool& singular) noexcept {
-    typename A::Solutions found;
-    typename A::SearchOptions options;
+    typename Arm::Solutions found;
+    typename Arm::SearchOptions options;
     options.seed = &nearby;
     options.limits = limits;
     Solver::search(pose, options, found);
@@ -116,17 +116,17 @@ template <class A, class Solver> struct PathStep {
   // To a row, if it is inside the limits on the turn that it came to.
   Status arrive(const double* row) noexcept {
     for (int j = 0; j < kDof && limits; ++j)
-      if (!(row[j] >= A::kLower.data()[j] - A::Policy::kLimitTolerance && row[j] <= A::kUpper.data()[j] + A::Policy::kLimitTolerance))
+      if (!(row[j] >= Arm::kLower.data()[j] - Arm::Policy::kLimitTolerance && row[j] <= Arm::kUpper.data()[j] + Arm::Policy::kLimitTolerance))
         return Status::Limits;
     for (int j = 0; j < kDof; ++j)
-      q[j] = limits ? std::min(std::max(row[j], A::kLower.data()[j]), A::kUpper.data()[j]) : row[j];
+      q[j] = limits ? std::min(std::max(row[j], Arm::kLower.data()[j]), Arm::kUpper.data()[j]) : row[j];
     return Status::Ok;
   }
 
   // The shortest motion by the Jacobian, of joints that are not stopped; the error before it.
   static double move(double* at, const Eigen::Isometry3d& pose, const bool* stopped, double damping) noexcept {
-    PoseError<AllMoving<A>> here(at, HeldAim<AllMoving<A>>(pose));
-    constexpr int n = PoseError<AllMoving<A>>::kCount;
+    PoseError<AllMoving<Arm>> here(at, HeldAim<AllMoving<Arm>>(pose));
+    constexpr int n = PoseError<AllMoving<Arm>>::kCount;
     const double worst = here.largest();
     double N[n][n];
     for (auto& row : here.slope)
@@ -150,7 +150,7 @@ template <class A, class Solver> struct PathStep {
   // others the one that all joints reach together, those that it would take out of their limits stopped there, and
   // expected is then where the Jacobian leads the others.
   Status next_row(const Eigen::Isometry3d& pose, double* expected, double* row, bool& singular) const noexcept {
-    if constexpr (A::kFree > 0) {
+    if constexpr (Arm::kFree > 0) {
       return unstopped(pose, expected, row, singular);
     } else {
       return closed_form(pose, q, expected, row, singular);
@@ -160,12 +160,12 @@ template <class A, class Solver> struct PathStep {
   // The closed form's row nearest to the expected one, what is held as `nearby` has it.
   static Status closed_form(const Eigen::Isometry3d& pose, const double* nearby, const double* expected, double* row,
                             bool& singular) noexcept {
-    typename A::Options options;
-    typename A::Joints seed;
+    typename Arm::Options options;
+    typename Arm::Joints seed;
     std::copy_n(nearby, kDof, seed.data());
     options.seed = &seed;
     options.limits = false;
-    typename A::Solutions found;
+    typename Arm::Solutions found;
     Solver::solve(pose, options, found);
     double least = kInfinity;
     for (int k = 0; k < found.count; ++k) {
@@ -204,12 +204,12 @@ template <class A, class Solver> struct PathStep {
       released[joint] = released[joint] || !arrived;
       at[joint] = arrived ? clipped(row, joint) : q[joint];
     }
-    singular = SingularValue<AllMoving<A>>::redundant_below(row, A::Policy::kSingularBelow);
+    singular = SingularValue<AllMoving<Arm>>::redundant_below(row, Arm::Policy::kSingularBelow);
     return Status::Ok;
   }
 
   static double clipped(const double* row, int j) noexcept {
-    return std::min(std::max(row[j], A::kLower.data()[j]), A::kUpper.data()[j]);
+    return std::min(std::max(row[j], Arm::kLower.data()[j]), Arm::kUpper.data()[j]);
   }
 
   // The best row of shortest motions of joints that are not stopped; whether it has the pose.
@@ -226,17 +226,17 @@ template <class A, class Solver> struct PathStep {
         error = here;
         std::copy_n(before, kDof, row);
       }
-      if ((slow && i > 2) || error < A::Policy::kConverged) break;
+      if ((slow && i > 2) || error < Arm::Policy::kConverged) break;
     }
-    return error < A::Policy::kArrived;
+    return error < Arm::Policy::kArrived;
   }
 
   // The joint that is farthest out of its limits, if one is.
   int farthest_out(const double* row) const noexcept {
-    double most = A::Policy::kLimitTolerance;
+    double most = Arm::Policy::kLimitTolerance;
     int worst = -1;
     for (int j = 0; j < kDof && limits; ++j) {
-      const double excess = std::max(A::kLower.data()[j] - row[j], row[j] - A::kUpper.data()[j]);
+      const double excess = std::max(Arm::kLower.data()[j] - row[j], row[j] - Arm::kUpper.data()[j]);
       if (!(excess > most)) continue;
       most = excess;
       worst = j;
@@ -246,14 +246,14 @@ template <class A, class Solver> struct PathStep {
 
   // The stopped joint, not released before, by whose motion off its limit the error shrinks most, if one is.
   static int pulled_off(const double* row, const Eigen::Isometry3d& pose, const bool* stopped, const bool* released) noexcept {
-    const PoseError<AllMoving<A>> here(row, HeldAim<AllMoving<A>>(pose));
+    const PoseError<AllMoving<Arm>> here(row, HeldAim<AllMoving<Arm>>(pose));
     double most = 0.0;
     int best = -1;
     for (int j = 0; j < kDof; ++j) {
       if (!stopped[j] || released[j]) continue;
       double pull = 0.0;
-      for (int a = 0; a < PoseError<AllMoving<A>>::kCount; ++a) pull += here.slope[a][j] * here.error[a];
-      if (row[j] > A::kLower.data()[j]) pull = -pull;
+      for (int a = 0; a < PoseError<AllMoving<Arm>>::kCount; ++a) pull += here.slope[a][j] * here.error[a];
+      if (row[j] > Arm::kLower.data()[j]) pull = -pull;
       if (!(pull > most)) continue;
       most = pull;
       best = j;
@@ -271,24 +271,24 @@ template <class A, class Solver> struct PathStep {
 };
 
 // Joint values along `count` poses. `Walk`: its result.
-template <class A, class Solver, class Walk>
-inline Walk follow_poses(const Eigen::Isometry3d* poses, std::ptrdiff_t count, const typename A::Joints& start, bool limits,
-                         typename A::Joints* q, bool* singular) noexcept {
-  using Status = typename A::Status;
+template <class Arm, class Solver, class Walk>
+inline Walk follow_poses(const Eigen::Isometry3d* poses, std::ptrdiff_t count, const typename Arm::Joints& start, bool limits,
+                         typename Arm::Joints* q, bool* singular) noexcept {
+  using Status = typename Arm::Status;
   Walk out;
-  PathStep<A, Solver> walk;
+  PathStep<Arm, Solver> walk;
   walk.limits = limits;
   Eigen::Isometry3d before;
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     Eigen::Isometry3d pose = poses[i];
     walk.crossed = false;
-    if (!PoseReading<A>::clean(pose)) {
-      out.status = PoseReading<A>::refused(pose);
+    if (!PoseReading<Arm>::clean(pose)) {
+      out.status = PoseReading<Arm>::refused(pose);
     } else {
       out.status = i > 0 ? walk.go_on(before, pose) : walk.begin(pose, start);
     }
     if (out.status != Status::Ok) return out;
-    std::copy_n(walk.q, A::kDof, q[i].data());
+    std::copy_n(walk.q, Arm::kDof, q[i].data());
     if (singular) singular[i] = walk.crossed;
     out.reached = i + 1;
     before = pose;
