@@ -87,8 +87,9 @@ def test_every_table_is_proved_and_its_rows_are_those_of_the_emitted_module(
 @pytest.mark.parametrize("name", sampled(SOLVED, ("Puma", "Olson13", "Parkman13")))
 def test_rows_of_a_thousand_poses(name: str, tmp_path: Path) -> None:
     derivation = derive(Request(ROBOTS / "tables" / f"{name}.toml"))
-    if derivation.module.plan is None:
-        _check(derivation, 1000, tmp_path)
+    if derivation.module.plan is not None:
+        pytest.skip("an elimination has no symbolic solution")
+    _check(derivation, 1000, tmp_path)
 
 
 def test_what_a_branch_says() -> None:
