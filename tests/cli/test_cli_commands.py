@@ -107,7 +107,7 @@ def test_json_alone_is_on_stdout(tmp_path: Path) -> None:
     record = json.loads(done.stdout)
     assert record["joints"][0] == "joint_a1" and record["max_solutions"] == 8
     assert record["verification"]["python"]["passed"] and record["name"] == "arm"
-    assert "behaviour tree:" in done.stderr
+    assert "behavior tree:" in done.stderr
 
 
 def test_quiet_says_nothing(tmp_path: Path) -> None:

@@ -66,7 +66,7 @@ def test_general_five_joints(
     assert "equations" not in said
     assert run(["from-dh", str(general), "--task", "pose", "-o", str(out), "-v"]) == 3
     told = capsys.readouterr().err
-    assert "behaviour tree:" in told and "solved nothing; left are" in told
+    assert "behavior tree:" in told and "solved nothing; left are" in told
     assert re.search(r"\d+ equations are left; the shortest", told)
     assert re.search(r"\n  \(\d,\d\) r33: .* = .*\n", told)
     assert re.search(r"nearest: sine and cosine for theta_\d from .* which lacks theta_\d", told)

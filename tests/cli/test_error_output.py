@@ -164,13 +164,13 @@ def test_the_tree_is_shown_on_failure(called: Called, capsys: pytest.CaptureFixt
     asked = ["from-urdf", str(KUKA), "--task", "position-yaw", "--no-verify"]
     assert run(asked) == 3
     brief = capsys.readouterr().err
-    assert "behaviour tree:" not in brief and "equations" not in brief
+    assert "behavior tree:" not in brief and "equations" not in brief
     first = next(line for line in brief.splitlines() if line.startswith("error: "))
     assert "6 joints move and the task fixes 4 freedoms: 2 of them have to be held" in first
     assert "--task position-yaw --free JOINT --free JOINT" in brief
     assert run([*asked, "-v"]) == 3
     told = capsys.readouterr().err
-    assert "behaviour tree:\nround 1" in told and "left are the joints" in told
+    assert "behavior tree:\nround 1" in told and "left are the joints" in told
 
 
 def test_outputs_that_cannot_be_written_fail_before_the_derivation(

@@ -45,11 +45,11 @@ def test_steps_of_every_arm_are_told(
     assert run(["build", "-v", "--jobs", jobs]) != 0
     said = capsys.readouterr().err
     for name in ("first", "second"):
-        for line in ("deriving theta_1", "verifying closure", "behaviour tree:", "  closure "):
+        for line in ("deriving theta_1", "verifying closure", "behavior tree:", "  closure "):
             assert f"\n{name}: {line}" in said
     assert "\nbad: reading elbow.urdf" in said and "\nbad: verifying" not in said
     assert run(["build", "--force", "--jobs", jobs]) != 0
-    assert "behaviour tree" not in capsys.readouterr().err
+    assert "behavior tree" not in capsys.readouterr().err
 
 
 def test_a_setup_file_without_a_main_guard(project: Path) -> None:

@@ -15,7 +15,7 @@ __all__ = ["derivation_trace"]
 
 def derivation_trace(graph: SolutionGraph) -> str:
     """The rounds of the behavior tree, and each step with its fallbacks and what was rejected."""
-    parts = ["behaviour tree:"]
+    parts = ["behavior tree:"]
     for number in sorted({t.round for t in graph.ticks}):
         parts += [f"round {number}", table(_round(graph, number))]
     parts += ["choices:"] if graph.steps else []

@@ -259,7 +259,7 @@ def digits_lost(errors: Array) -> float:
 
 
 def distinct_of_runs(runs: list[Array], turning: Turning) -> Array:
-    """Which of the runs' rows (k, 6) has which of all distinct rows: (24, n) bool. Joint values are
+    """Which of the runs' rows (k, 6) has which of all distinct rows: (len(runs), n) bool. Joint values are
     compared modulo turns."""
     union = np.concatenate(runs)
     gap = union[:, None] - union

@@ -181,7 +181,7 @@ class Divisor:
 @dataclass(frozen=True, slots=True)
 class LoweredForm:
     """`values`: (cosine, sine) or (distance,), defined where `regular` (None: always) holds, and well
-    away from a continuum where `clear` does; `guard`: condition for a real solution (None: always);
+    away from a continuum where `divisor.clear` does; `guard`: condition for a real solution (None: always);
     `branches`: how many signs of sigma differ; `under`: what is under the square root, and its natural
     size."""
 

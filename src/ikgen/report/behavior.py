@@ -1,4 +1,4 @@
-"""The behaviour tree: its nodes, and what each of them did in every round."""
+"""The behavior tree: its nodes, and what each of them did in every round."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _KINDS = {"sequence": "sequence", "selector": "selector", "or": "OR"}
 def behavior_section(graph: SolutionGraph) -> list[Block]:
     """What every node of the tree did in every round: a picture, on paper a table."""
     blocks: list[Block] = [
-        Heading(("Behaviour tree",), anchor="tree"),
+        Heading(("Behavior tree",), anchor="tree"),
         Paragraph((
             "One round solves one unknown: equations with one or two unknowns are collected, every "
             "leaf looks at them, the ranker takes the best candidate; transforms run where no leaf "

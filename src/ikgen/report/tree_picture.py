@@ -1,4 +1,4 @@
-"""The behaviour tree as a picture: the path that every round took is lit, one round at a time."""
+"""The behavior tree as a picture: the path that every round took is lit, one round at a time."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def tree_picture(outline: Sequence[Path], ticks: Sequence[Tick], told: Mapping[i
     svg = (
         f'<svg xmlns="http://www.w3.org/2000/svg" class="tree" viewBox="0 0 {width:g} {height:g}" '
         f'width="{width:g}" height="{height:g}" role="img" font-family="sans-serif">'
-        f"<title>The behaviour tree, round by round</title>{_shown(len(rounds))}{''.join(parts)}</svg>"
+        f"<title>The behavior tree, round by round</title>{_shown(len(rounds))}{''.join(parts)}</svg>"
     )
     return (
         f'<div class="rounds">{_buttons(rounds)}<figure>{svg}</figure>{_lines(rounds, told)}</div>'

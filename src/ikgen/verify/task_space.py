@@ -1,7 +1,7 @@
 """What of the pose a task reads: its residual, its error in m and rad, and its Jacobian.
 
-Residuals are written in the base link's axes, so the derivative of `task_residual` (target minus
-tip) is minus `task_jacobian`.
+Residuals are written in the base link's axes, so the derivative of `TaskSpace.residual` (target minus
+tip) is minus `TaskSpace.jacobian`.
 """
 
 from __future__ import annotations
