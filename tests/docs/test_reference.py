@@ -15,8 +15,17 @@ from typing import Any
 import pytest
 from tests.support.snippets import blocks
 
+from ikgen.cli.main import run
+from ikgen.processes.termination import TERMINATED
 from ikgen.projects.config import load_config
+from ikgen.projects.new_config import ArmTable
+from ikgen.projects.robot_list import ListedRobot
 from ikgen.tasks import TASKS
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
 
 ROOT = Path(__file__).resolve().parents[2]
 REFERENCE = ROOT / "docs/reference"
@@ -31,9 +40,12 @@ def script(path: Path) -> ModuleType:
     return module
 
 
-def words(page: str) -> set[str]:
-    """Names in code on a page."""
+def words(page: str, section: str = "") -> set[str]:
+    """Names in code on a page, or in front of its first section and in one."""
     text = (REFERENCE / page).read_text(encoding="utf-8")
+    if section:
+        first, *others = re.split(r"^## ", text, flags=re.M)
+        text = first + next(one for one in others if section in one.partition("\n")[0])
     fences = re.findall(r"^```\w+\n(.*?)^```", text, re.M | re.S)
     inline = re.findall(r"`([^`\n]+)`", re.sub(r"^```.*?^```", "", text, flags=re.M | re.S))
     return {word for part in (*fences, *inline) for word in re.findall(r"\w+", part)}
@@ -127,6 +139,44 @@ def test_json_fields_are_listed(tmp_path: Path) -> None:
     found |= fields(output("inspect", str(fixtures / "doosan_m1013.urdf"), "--no-advice"))
     assert {"branches", "worst_case", "deviation", "before", "max_solutions", "mimic"} <= found
     assert found <= words("json.md"), found - words("json.md")
+
+
+def test_json_fields_of_robots_with_several_arms_and_held_joints_are_listed(tmp_path: Path) -> None:
+    fixtures, config = ROOT / "urdf_fixtures", tmp_path / "ikgen.toml"
+    init = output("init", str(fixtures / "abb_yumi.urdf"), "-o", str(config))
+    assert "other_ends" in init and fields(init) <= words("json.md", "init")
+    build = output("build", str(config), "--check")
+    assert build["stale"] and fields(build) <= words("json.md", "build")
+    chain = (str(fixtures / "franka_fr3.urdf"), "--tip", "fr3_link8", "-o", str(tmp_path))
+    made = output("from-urdf", *chain, "--samples", "20")
+    assert made["chosen"]["held"] == ["fr3_joint7"]
+    assert set(made["chosen"]) <= words("json.md", "from-urdf")
+    assert fields(made) <= words("json.md")
+    assert fields(output("report", *chain, "--no-verify")) <= words("json.md", "report")
+
+
+@pytest.mark.parametrize("names", [True, False])
+def test_json_fields_of_robots_known_by_name_are_listed(
+    names: bool, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    robot = ListedRobot("data:arm", () if names else (ArmTable("left", "base", "hand", 6),), "")
+    monkeypatch.setattr("ikgen.projects.robot_list.listed_robots", lambda *_, **__: [robot])
+    assert run(["robots", "--json", *["--names"] * names]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert fields(found) <= words("json.md", "robots")
+
+
+def test_exit_codes_are_listed() -> None:
+    page = (REFERENCE / "exit-codes.md").read_text(encoding="utf-8")
+    assert str(TERMINATED) in re.findall(r"^\| (\d+) \|", page, re.M)
+
+
+def test_extras_for_users_are_listed() -> None:
+    text = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
+    extras = tomllib.loads(text)["project"]["optional-dependencies"]
+    own = {"test", "docs", "browser", "dev"}  # of this repository
+    table = re.findall(r"^\| `(\w+)` \|", (REFERENCE / "library.md").read_text(), re.M)
+    assert set(extras) - own <= set(table)
 
 
 def test_pictures_are_those_that_the_script_draws() -> None:
