@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,6 +12,7 @@ from tests.support.solving import FIXTURES
 
 from ikgen.derivation.read import default_name, read, read_tree
 from ikgen.errors import BadDescriptionError, UsageError
+from ikgen.model.oddity import OddityKind
 from ikgen.projects.config import load_config
 from ikgen.records.request import Request
 
@@ -94,3 +96,19 @@ def test_what_is_odd_about_joints_that_do_not_move_the_chain_is_left_out(tmp_pat
     assert len(read_tree(Request(robot)).source.warnings) == 2
     (only,) = read(Request(robot, tip="b_tool0")).source.warnings
     assert "joint 'b_waist': axis of length 2 normalised" in only
+    robot.write_text(odd.replace('<axis xyz="0 0 2"/>', '<axis xyz="0 0 1"/>' * 2))
+    (only,) = read(Request(robot, tip="b_tool0")).source.warnings
+    assert "joint 'b_waist' has two <axis> elements that say the same" in only
+
+
+def test_what_decisions_go_by_is_not_read_from_words(tmp_path: Path) -> None:
+    robot = write_robot(tmp_path / "elbow.urdf")
+    robot.write_text(
+        robot.read_text()
+        .replace('"waist"', "\"it's: joint 'elbow': \"")
+        .replace('<axis xyz="0 0 1"/>', '<axis xyz="0 0 2"/>')
+    )
+    (odd,) = read(Request(robot)).source.warnings
+    assert odd.joint == "it's: joint 'elbow': " and odd.kind is OddityKind.TOLD
+    copied = pickle.loads(pickle.dumps(odd))
+    assert copied == odd and (copied.joint, copied.kind) == (odd.joint, odd.kind)

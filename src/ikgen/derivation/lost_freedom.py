@@ -5,6 +5,8 @@ from __future__ import annotations
 from itertools import combinations
 from typing import TYPE_CHECKING
 
+from ikgen.model.oddity import OddityKind
+
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
@@ -13,7 +15,6 @@ if TYPE_CHECKING:
 
 __all__ = ["lost_freedom"]
 
-_ENDLESS = "infinitely many solutions"
 _MOST = 6
 """Joints of an arm of which each may have a freedom of its own: of more it is no surprise."""
 
@@ -24,7 +25,7 @@ def lost_freedom(reading: Reading, held: Collection[str]) -> str:
     because it was asked for, or where a warning of the file says so."""
     dh = reading.dh
     found = _dependent(dh) if dh.dof <= _MOST else None
-    if found is None or any(_ENDLESS in warning for warning in reading.source.warnings):
+    if found is None or any(one.kind is OddityKind.ENDLESS for one in reading.source.warnings):
         return ""
     joints, ways = found
     if not {dh.joints[j].name for j in joints}.isdisjoint(held):
@@ -33,8 +34,8 @@ def lost_freedom(reading: Reading, held: Collection[str]) -> str:
     number, reason = f"{ways} way{'s' * (ways > 1)}", _reason(dh, joints)
     return (
         f"joints {', '.join(names)} and {last} move the tip in {number} only"
-        f"{f', as they {reason}' * bool(reason)}: a pose has {_ENDLESS} unless one of them is held or "
-        "locked"
+        f"{f', as they {reason}' * bool(reason)}: a pose has infinitely many "
+        "solutions unless one of them is held or locked"
     )
 
 

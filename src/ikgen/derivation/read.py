@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -12,6 +11,7 @@ from ikgen.errors import BadDescriptionError, UsageError
 from ikgen.model.chain import PRISMATIC
 from ikgen.model.joint_tree import Joint
 from ikgen.model.module_name import identifier
+from ikgen.model.oddity import Oddity, OddityKind
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -23,10 +23,6 @@ if TYPE_CHECKING:
     from ikgen.records.request import Request
 
 __all__ = ["arm_name", "default_name", "has_arm_angle", "read", "read_tree"]
-
-
-_ABOUT_JOINT = re.compile(r": joint '(.*?)': ")
-"""What a warning about one joint has behind its place."""
 
 
 def read(request: Request, tree: JointTree | None = None) -> Reading:
@@ -131,12 +127,12 @@ def _of_chain(tree: JointTree, chain: Chain, request: Request) -> JointTree:
     near = {joint.name for joint in between} | {joint.name for joint in chain.joints}
     others = {joint.name for joint in tree.joints} - near
     kept = []
-    for text in tree.source.warnings:
-        found = _ABOUT_JOINT.search(text)
-        locked = found is not None and found[1] in request.lock and "; --lock " in text
-        if not locked and (found is None or found[1] not in others):
-            kept.append(text)
-    warnings = (*kept, *beyond_own_limits(tree, chain, between))
+    for one in tree.source.warnings:
+        settled = one.kind is OddityKind.LOCKABLE and one.joint in request.lock
+        if not settled and one.joint not in others:
+            kept.append(one)
+    beyond = map(Oddity, beyond_own_limits(tree, chain, between))
+    warnings = (*kept, *beyond)
     return replace(tree, source=replace(tree.source, warnings=warnings))
 
 
@@ -146,8 +142,9 @@ def _with_left_out(tree: JointTree, request: Request) -> JointTree:
 
     if request.tip is not None:
         return tree
-    words = tuple(filter(None, (arm.left_out for arm in candidate_chains(tree, request.base))))
-    return replace(tree, source=replace(tree.source, warnings=(*tree.source.warnings, *words)))
+    words = filter(None, (arm.left_out for arm in candidate_chains(tree, request.base)))
+    warnings = (*tree.source.warnings, *map(Oddity, words))
+    return replace(tree, source=replace(tree.source, warnings=warnings))
 
 
 def _told(reading: Reading, path: Path, model: DHChain) -> Reading:
@@ -180,7 +177,8 @@ def _coupled_chain(request: Request, tree: JointTree) -> tuple[JointTree, Chain,
     words = tuple(f"{joint}={stage.words}" for joint, stage in stages.items())
     if stages:
         note = f"stages of a telescope take equal shares: --couple {' --couple '.join(words)}"
-        tree = replace(tree, source=replace(tree.source, warnings=(*tree.source.warnings, note)))
+        warnings = (*tree.source.warnings, Oddity(note))
+        tree = replace(tree, source=replace(tree.source, warnings=warnings))
     return tree, select_chain(tree, chain.base_link, chain.tip_link, locked), words
 
 

@@ -14,6 +14,7 @@ from lxml import etree
 from ikgen.errors import BadDescriptionError, place_in
 from ikgen.importers.merge_conflict import conflict_or
 from ikgen.model.joint_tree import Source
+from ikgen.model.oddity import Oddity, OddityKind
 
 __all__ = [
     "LARGEST_FILE",
@@ -59,20 +60,32 @@ class Place:
     """Where messages about a document point: its file, and the warnings collected so far."""
 
     file: str
-    warnings: list[str] = field(default_factory=list)
+    warnings: list[Oddity] = field(default_factory=list)
 
     def error(self, element: Element, message: str, hint: str = "") -> BadDescriptionError:
         """The error to raise about an element, with the file and the element's line."""
         line = None if element is None else element.sourceline
         return BadDescriptionError(message, file=self.file, line=line, hint=hint)
 
-    def warn(self, element: Element, message: str) -> None:
-        """Record an oddity that could be read anyway."""
-        self.warn_at(None if element is None else element.sourceline, message)
+    def warn(
+        self,
+        element: Element,
+        message: str,
+        joint: str = "",
+        kind: OddityKind = OddityKind.TOLD,
+    ) -> None:
+        """Record an oddity that could be read anyway, about one `joint` where it is named."""
+        self.warn_at(None if element is None else element.sourceline, message, joint, kind)
 
-    def warn_at(self, line: int | None, message: str) -> None:
+    def warn_at(
+        self,
+        line: int | None,
+        message: str,
+        joint: str = "",
+        kind: OddityKind = OddityKind.TOLD,
+    ) -> None:
         """Record an oddity of a line."""
-        self.warnings.append(f"{place_in(self.file, line)}{message}")
+        self.warnings.append(Oddity(f"{place_in(self.file, line)}{message}", joint, kind))
 
 
 def shown_file(source: Source) -> str:

@@ -23,6 +23,7 @@ from ikgen.kinematics.forward import file_forward, pose_difference
 from ikgen.kinematics.rigid import dh_link, read_only
 from ikgen.model.chain import Chain
 from ikgen.model.dh import DHChain
+from ikgen.model.oddity import Oddity
 
 __all__ = ["Calibration", "calibrated_dh", "calibration_of", "offset_dh"]
 
@@ -46,10 +47,10 @@ class Calibration:
         return f"{self.file}: up to {self.off[0]:.2g} m and {self.off[1]:.2g} rad off the model"
 
     @property
-    def warnings(self) -> tuple[str, ...]:
+    def warnings(self) -> tuple[Oddity, ...]:
         """What there is to warn of."""
         why = "arms are measured to be off by some mm and 1e-3 rad: check its numbers and units"
-        return (f"{self.words}; {why}",) if self.far else ()
+        return (Oddity(f"{self.words}; {why}"),) if self.far else ()
 
 
 def calibration_of(file: Path, model: DHChain, own: DHChain) -> Calibration:

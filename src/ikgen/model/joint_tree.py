@@ -8,6 +8,7 @@ from pathlib import Path
 
 from ikgen.model.arrays import Array
 from ikgen.model.joint_relation import Mimic
+from ikgen.model.oddity import Oddity
 
 __all__ = ["Joint", "JointTree", "JointType", "Limits", "Mimic", "Source"]
 
@@ -83,7 +84,7 @@ class Source:
     dependencies: tuple[Path, ...] = ()
     package_urls: tuple[tuple[Path, str], ...] = ()
     arguments: tuple[tuple[str, str], ...] = ()
-    warnings: tuple[str, ...] = ()
+    warnings: tuple[Oddity, ...] = ()
     example: tuple[float, ...] = ()
     environment: tuple[tuple[str, str | None], ...] = ()
 

@@ -22,6 +22,14 @@ __all__ = ["Earlier", "earlier_outputs"]
 
 
 @dataclass(frozen=True, slots=True)
+class _Difference:
+    """Whose outputs are, in words; `chain`: those of another chain of the robot."""
+
+    words: str
+    chain: bool = False
+
+
+@dataclass(frozen=True, slots=True)
 class Earlier:
     """What was generated before by the name that outputs are to have; `broken` are records that cannot be
     read."""
@@ -41,13 +49,17 @@ class Earlier:
         for path in self.broken:
             raise self._refused(path, "is no record of ikgen, or a broken one", reading)
         for record in self.records:
-            difference = _difference(record, request, reading, task)
-            if difference:
-                raise self._refused(record.path, f"has outputs of {difference}", reading)
+            whose = _difference(record, request, reading, task)
+            if whose is not None:
+                raise self._refused(
+                    record.path, f"has outputs of {whose.words}", reading, chain=whose.chain
+                )
 
-    def _refused(self, path: Path, what: str, reading: Reading) -> UsageError:
+    def _refused(
+        self, path: Path, what: str, reading: Reading, *, chain: bool = False
+    ) -> UsageError:
         other = f"{self.name}_{identifier(reading.dh.tip_link)}"
-        by_tip = "another chain, " in what and not self.name.endswith(other[len(self.name) :])
+        by_tip = chain and not self.name.endswith(other[len(self.name) :])
         new = f"--name {other}" if by_tip else "--name NAME"
         return UsageError(
             f"{path} {what}",
@@ -91,24 +103,26 @@ def earlier_outputs(out: Path, name: str) -> Earlier:
     return Earlier(name, tuple(records), tuple(broken))
 
 
-def _difference(record: Record, request: Request, reading: Reading, task: str | None) -> str:
+def _difference(
+    record: Record, request: Request, reading: Reading, task: str | None
+) -> _Difference | None:
     """Whose the recorded outputs are, if not this request's. A task that was left to ikgen both times may
     have become another one with the description."""
     was, dh = record.request, reading.dh
     if record.source_sha256 != reading.source.sha256:
         if was.robot.resolve() != request.robot.resolve():
-            return f"another robot, {was.robot}"
+            return _Difference(f"another robot, {was.robot}")
         if dict(was.args) != dict(request.args):
             given = " ".join(f"{name}:={text}" for name, text in was.args.items())
-            return f"another robot, {was.robot} with {given or 'no arguments'}"
+            return _Difference(f"another robot, {was.robot} with {given or 'no arguments'}")
     if (was.base, was.tip) != (dh.base_link, dh.tip_link):
-        return f"another chain, {was.base} -> {was.tip}"
+        return _Difference(f"another chain, {was.base} -> {was.tip}", chain=True)
     changed = _changed(was, request)
     if changed:
-        return f"the arm {changed}"
+        return _Difference(f"the arm {changed}")
     if task is not None and was.task != task and record.asked.task != request.task:
-        return f"another task, {was.task}"
-    return ""
+        return _Difference(f"another task, {was.task}")
+    return None
 
 
 def _changed(was: Request, request: Request) -> str:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ikgen.errors import BadDescriptionError, place_in
+from ikgen.errors import BadDescriptionError
 from ikgen.importers.dh.entry_expression import BadEntryError, evaluate, finite
 from ikgen.importers.dh.example_entry import read_example
 from ikgen.importers.dh.row_merge import Merged, merge, modified_rows
@@ -22,6 +22,7 @@ from ikgen.model.arrays import Array
 from ikgen.model.chain import MOST_AXES
 from ikgen.model.dh import DHChain
 from ikgen.model.joint_tree import Source
+from ikgen.model.oddity import OddityKind
 
 __all__ = ["read_dh_table"]
 
@@ -60,7 +61,8 @@ def read_dh_table(
         _note_new_rows(document, merged)
     make = exact_chain if merged.complete else chain_of_rows
     dh = make(merged, ends, free=tuple(free), locked=given)
-    document.warnings.extend(_redundant(dh))
+    for note in _redundant(dh):
+        document.warn(note, OddityKind.ENDLESS)
     return _source(document, read_example(document, entries, tuple(locked or {}))), dh
 
 
@@ -72,7 +74,7 @@ def _note_new_rows(document: TableDocument, merged: Merged) -> None:
             "a fixed row between joints cannot be merged with symbolic ones",
             "give the lengths and angles numbers under [parameters]",
         )
-    document.warnings.append("a fixed row between joints: the rows were made anew from the axes")
+    document.warn("a fixed row between joints: the rows were made anew from the axes")
 
 
 def _source(document: TableDocument, example: tuple[float, ...]) -> Source:
@@ -82,7 +84,7 @@ def _source(document: TableDocument, example: tuple[float, ...]) -> Source:
         text=document.text,
         sha256=hashlib.sha256(document.text.encode()).hexdigest(),
         dependencies=(document.path.resolve(),),
-        warnings=tuple(f"{place_in(str(document.path), None)}{w}" for w in document.warnings),
+        warnings=tuple(document.warnings),
         example=example,
     )
 
@@ -95,11 +97,11 @@ def _check_convention(document: TableDocument, entries: tuple[Entry, ...]) -> No
     first, last = (not (e.alpha.is_near(0.0) and e.a.is_near(0.0)) for e in (moving[0], moving[-1]))
     convention = document.data["convention"]
     if convention == "modified" and first and not last:
-        document.warnings.append(
+        document.warn(
             "row 1 has alpha or a, the last row has none: this looks like the standard convention"
         )
     if convention == "standard" and last and not first:
-        document.warnings.append(
+        document.warn(
             "the last row has alpha or a, row 1 has none: this looks like the modified convention"
         )
 

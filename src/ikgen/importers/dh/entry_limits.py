@@ -53,7 +53,8 @@ def read_limits(
     if joint["type"] != "revolute":
         return Limits(values[0], values[1])
     limits, odd = turning_limits(values[0], values[1])
-    document.warnings.extend(f"joint {i}: {words}" for words in odd)
+    for words in odd:
+        document.warn(f"joint {i}: {words}")
     return limits
 
 

@@ -9,10 +9,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from ikgen.errors import BadDescriptionError
+from ikgen.errors import BadDescriptionError, place_in
 from ikgen.importers.merge_conflict import conflict_or
 from ikgen.importers.toml_text import parse_toml
 from ikgen.importers.xml_document import read_text
+from ikgen.model.oddity import Oddity, OddityKind
 
 __all__ = ["ENTRIES", "TableDocument", "read_document"]
 
@@ -38,7 +39,11 @@ class TableDocument:
     path: Path
     text: str
     data: Mapping[str, Any]
-    warnings: list[str] = field(default_factory=list)
+    warnings: list[Oddity] = field(default_factory=list)
+
+    def warn(self, message: str, kind: OddityKind = OddityKind.TOLD) -> None:
+        """Record an oddity that could be read anyway."""
+        self.warnings.append(Oddity(f"{place_in(str(self.path), None)}{message}", kind=kind))
 
     @property
     def joints(self) -> list[Mapping[str, Any]]:

@@ -162,9 +162,9 @@ def _check_parameters(
     )
     names = [_in_code(n) for n in symbols if n.isidentifier()]
     if names and parameters:
-        document.warnings.append(f"kept as symbols, without numbers: {', '.join(names)}")
+        document.warn(f"kept as symbols, without numbers: {', '.join(names)}")
     if unused:
-        document.warnings.append(f"parameters that no row uses: {', '.join(unused)}")
+        document.warn(f"parameters that no row uses: {', '.join(unused)}")
 
 
 def _in_code(name: str) -> str:

@@ -96,7 +96,7 @@ def _only_child(joint: Element, tag: str, name: str, place: Place) -> Element | 
         if dict(other.attrib) != dict(found[0].attrib):
             hint = "keep one of them: ROS reads the first"
             raise place.error(other, f"joint '{name}' has two <{tag}> elements that differ", hint)
-        place.warn(other, f"joint '{name}' has two <{tag}> elements that say the same")
+        place.warn(other, f"joint '{name}' has two <{tag}> elements that say the same", name)
     return found[0] if found else None
 
 
@@ -138,7 +138,9 @@ def _origin(joint: Element, name: str, place: Place) -> Array:
         rpy = _vector(origin, "rpy", (0.0, 0.0, 0.0), name, place)
         if max(map(abs, rpy)) > DEGREES_ABOVE:
             angles = " ".join(f"{angle:g}" for angle in rpy)
-            place.warn(origin, f"joint '{name}': rpy {angles} looks like degrees: taken as rad")
+            place.warn(
+                origin, f"joint '{name}': rpy {angles} looks like degrees: taken as rad", name
+            )
         T[:3, :3] = rotation_rpy(*rpy)
     return T
 
@@ -158,7 +160,7 @@ def _axis(joint: Element, name: str, place: Place) -> Array:
             axis, f"joint '{name}' moves about a zero axis", "give the axis a direction"
         )
     if abs(size - 1.0) > _AXIS_ROUNDING:
-        place.warn(axis, f"joint '{name}': axis of length {size:g} normalised")
+        place.warn(axis, f"joint '{name}': axis of length {size:g} normalised", name)
     vector = np.array(xyz)
     return np.asarray(vector / length(vector))
 
@@ -174,13 +176,15 @@ def _limits(joint: Element, type_: JointType, name: str, place: Place) -> Limits
         for attribute in ("effort", "velocity"):
             if bounds.get(attribute, 0.0) < 0.0:
                 text = limit.get(attribute)
-                place.warn(limit, f"joint '{name}': negative {attribute} limit {text} ignored")
+                place.warn(
+                    limit, f"joint '{name}': negative {attribute} limit {text} ignored", name
+                )
     try:
         limits, notes = joint_limits(type_, bounds.get("lower"), bounds.get("upper"), name)
     except BadValueError as bad:
         raise place.error(joint, f"joint '{name}': {bad}", bad.hint) from None
     for note in notes:
-        place.warn(joint, f"joint '{name}': {note}")
+        place.warn(joint, f"joint '{name}': {note}", name, note.kind)
     return limits
 
 

@@ -6,6 +6,7 @@ import math
 
 from ikgen.importers.urdf.attribute_values import BadValueError
 from ikgen.model.joint_tree import JointType, Limits
+from ikgen.model.oddity import Oddity, OddityKind
 
 __all__ = ["DEGREES_ABOVE", "FARTHEST", "UNLIMITED", "joint_limits", "turning_limits"]
 
@@ -30,7 +31,7 @@ FARTHEST = 1e6
 
 def joint_limits(
     type_: JointType, lower: float | None, upper: float | None, name: str
-) -> tuple[Limits, tuple[str, ...]]:
+) -> tuple[Limits, tuple[Oddity, ...]]:
     """The range of the joint `name` (rad or m) and what was odd about it.
 
     URDF's default of an absent bound is 0, which cannot be meant where both are absent or 0: such
@@ -41,16 +42,18 @@ def joint_limits(
     if not type_.moves_on_one_axis or type_ is JointType.CONTINUOUS:
         return UNLIMITED, ()
     if lower is None and upper is None:
-        return UNLIMITED, ("no lower and upper limit: taken as unlimited",)
+        return UNLIMITED, (Oddity("no lower and upper limit: taken as unlimited"),)
     low, high = lower or 0.0, upper or 0.0
     if low == high == 0.0:
-        return UNLIMITED, ("lower = upper = 0: taken as unlimited; --lock it if it cannot move",)
+        text = "lower = upper = 0: taken as unlimited; --lock it if it cannot move"
+        return UNLIMITED, (Oddity(text, name, OddityKind.LOCKABLE),)
     notes = []
     if lower is None or upper is None:
         missing = "lower" if lower is None else "upper"
-        notes.append(f"no {missing} limit: taken as 0, the default of URDF")
+        notes.append(Oddity(f"no {missing} limit: taken as 0, the default of URDF"))
     if low > high:
-        notes.append(f"lower limit {low:g} is above the upper limit {high:g}: swapped")
+        text = f"lower limit {low:g} is above the upper limit {high:g}: swapped"
+        notes.append(Oddity(text))
         low, high = high, low
     if low > FARTHEST - _TURN or high < -FARTHEST + _TURN:  # a turn inside has to be there
         raise BadValueError(
@@ -59,24 +62,23 @@ def joint_limits(
         )
     if low == high:
         option = f"--lock {name}={Limits(low, high).middle_text}"
-        notes.append(
-            f"lower = upper = {low:g}: the joint cannot move; {option} makes it a constant"
-        )
+        text = f"lower = upper = {low:g}: the joint cannot move; {option} makes it a constant"
+        notes.append(Oddity(text, name, OddityKind.LOCKABLE))
     if type_ is JointType.PRISMATIC:
         return Limits(low, high), tuple(notes)
     limits, odd = turning_limits(low, high)
     return limits, (*notes, *odd)
 
 
-def turning_limits(low: float, high: float) -> tuple[Limits, tuple[str, ...]]:
+def turning_limits(low: float, high: float) -> tuple[Limits, tuple[Oddity, ...]]:
     """The range of a revolute joint (rad) whose limits are stated so, and what was odd about it."""
     if high - low > _NO_LIMIT_FROM:
         known = min(-low, high) >= _NO_LIMIT_FROM
         note = f"limits {low:g} to {high:g} rad: taken as unlimited"
-        return UNLIMITED, () if known else (note,)
+        return UNLIMITED, () if known else (Oddity(note),)
     if _like_degrees(low, high):
         note = f"limits {low:g} to {high:g} rad look like degrees: kept as they are"
-        return Limits(low, high), (note,)
+        return Limits(low, high), (Oddity(note),)
     return Limits(low, high), ()
 
 

@@ -25,6 +25,7 @@ from ikgen.importers.xml_document import (
     shown_file,
 )
 from ikgen.model.joint_tree import JointTree, Source
+from ikgen.model.oddity import Oddity
 
 __all__ = ["NO_LINKS", "changed_tree", "parse_urdf", "read"]
 
@@ -59,7 +60,7 @@ def parse_urdf(
     package_urls: tuple[tuple[Path, str], ...] = (),
     environment: tuple[tuple[str, str | None], ...] = (),
     arguments: Mapping[str, str] | None = None,
-    warnings: Sequence[str] = (),
+    warnings: Sequence[Oddity] = (),
 ) -> JointTree:
     """Build the tree of a URDF text; `path` is the file that the user named.
 
@@ -79,7 +80,7 @@ def parse_urdf(
     return _tree(parse_xml(text, shown_file(source)), source, warnings)
 
 
-def _tree(root: Element, source: Source, warnings: Sequence[str]) -> JointTree:
+def _tree(root: Element, source: Source, warnings: Sequence[Oddity]) -> JointTree:
     """The tree of a document; what is odd in it is added to the warnings."""
     place = Place(shown_file(source), list(warnings))
     _check_root(root, place)

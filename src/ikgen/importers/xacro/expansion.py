@@ -15,6 +15,7 @@ from ikgen.importers.xacro.expansion_session import Arguments, Session
 from ikgen.importers.xml_document import Element, children, local_name, parse_xml, read_text
 from ikgen.model.counted import listed
 from ikgen.model.joint_tree import JointTree
+from ikgen.model.oddity import Oddity
 
 __all__ = ["Expansion", "expand", "read"]
 
@@ -30,7 +31,7 @@ class Expansion:
     text: str
     dependencies: tuple[Path, ...]
     package_urls: tuple[tuple[Path, str], ...] = ()
-    warnings: tuple[str, ...] = ()
+    warnings: tuple[Oddity, ...] = ()
     environment: tuple[tuple[str, str | None], ...] = ()
     macros: tuple[str, ...] = ()
 
@@ -105,7 +106,7 @@ def expand(
         _without_paths(text, finder, top),
         tuple(dependencies),
         tuple(urls.items()),
-        tuple(warnings),
+        tuple(map(Oddity, warnings)),
         tuple(sorted(session.environment.items())),
         tuple(e.get("name") for e in root.iter() if local_name(e) == "macro" and e.get("name")),
     )
