@@ -7,10 +7,11 @@ import shutil
 from pathlib import Path
 
 import pytest
+from tests.support.small_robots import write_robot
 
 import ikgen
 from ikgen.cli.main import run
-from ikgen.errors import BadDescriptionError
+from ikgen.errors import ArgumentError, BadDescriptionError
 from ikgen.projects.config import default_config, load_config
 from ikgen.projects.depfile import depfile_text
 from ikgen.projects.stale import why_stale
@@ -179,14 +180,51 @@ def test_an_error_of_the_system_is_told_as_by_every_command(
         ("[[arm]]\nname = 'a'\nrobot = 'r'\npackage_paths = ['no']", "no such directory: .*no"),
         ("[[arms]]\nname = 'a'\nrobot = 'r'", "unknown entry 'arms'"),
         ("[[arm]]\nname = 'a'\nrobot = 'r'\nemit = []", "names no output"),
+        ("[[arm]]\nname = 'a'\nrobot = 'r'\ntool_axis = 'w'", "no tool axis named 'w'"),
+        (
+            "[[arm]]\nname = 'a'\nrobot = 'r'\ntask = 'position-pitch:x'\ntool_axis = 'y'",
+            "arm.0..task: the task 'position-pitch:x' goes by another axis than y",
+        ),
         ("other = 3\n[[arm]]\nname = 'a'\nrobot = 'r'", "unknown entry 'other'"),
     ],
 )
 def test_bad_configs(tmp_path: Path, text: str, said: str) -> None:
     path = tmp_path / "ikgen.toml"
     path.write_text(text)
-    with pytest.raises(BadDescriptionError, match=said):
+    with pytest.raises(BadDescriptionError, match=said) as caught:
         load_config(path)
+    assert caught.value.hint
+
+
+@pytest.mark.parametrize(
+    ("entry", "option", "said", "hint"),
+    [
+        ("name = 'a-b'", ["--name", "a-b"], "'a-b' is not an identifier", "for example 'a_b'"),
+        ("maintainer = 'Ada'", ["--maintainer", "Ada"], "'Ada' is not written NAME <EMAIL>",
+         "for example 'Ada Lovelace <ada@example.com>'"),
+        ("couple = { j = 'k*' }", ["--couple", "j=k*"], "'k*' is not SOURCE*k+c",
+         "write SOURCE*k+c, for example stage_1*1+0"),
+    ],
+)  # fmt: skip
+def test_options_arguments_and_entries_are_refused_in_the_same_words(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str],
+    entry: str, option: list[str], said: str, hint: str,
+) -> None:  # fmt: skip
+    path = tmp_path / "ikgen.toml"
+    name = "" if entry.startswith("name") else "name = 'a'\n"
+    path.write_text(f"[[arm]]\nrobot = 'r'\n{name}{entry}\n")
+    with pytest.raises(BadDescriptionError) as caught:
+        load_config(path)
+    assert said in caught.value.message and caught.value.hint.startswith(hint)
+    robot = write_robot(tmp_path / "elbow.urdf")
+    assert run(["from-urdf", str(robot), *option]) == 2
+    told = capsys.readouterr().err
+    assert f"error: {option[0]}" in told and said in told and f"hint: {hint}" in told
+    arguments = {"name": {"name": "a-b"}, "couple": {"couple": {"j": "k*"}}}
+    if option[0][2:] in arguments:
+        with pytest.raises(ArgumentError) as refused:
+            ikgen.load(robot, **arguments[option[0][2:]])
+        assert said in refused.value.message and refused.value.hint.startswith(hint)
 
 
 def test_pyproject(tmp_path: Path) -> None:
@@ -228,7 +266,7 @@ def test_depfile_escapes() -> None:
     [
         ("[[arm]]\nname = 'a'\nrobot = 'r'\nemmit = []", ":4: arm[0].emmit: unknown entry"),
         ("[[arm]]\nname = 'a'\nrobot = 'r'\n\n[[arm]]\nname = 'b-c'\nrobot = 'r'",
-         ":6: arm[1].name: the name 'b-c' is not an identifier"),
+         ":6: arm[1].name: 'b-c' is not an identifier"),
         ("[[arm]]\nname = 'a'\nrobot = 'r'\nlock = { j = 'x' }", ":4: arm[0].lock.j: 'x' is not a"),
         ("[[arm]]\nname = 'a'\nrobot = 'r'\n[arm.lock]\nj = 'x'", ":5: arm[0].lock.j: 'x'"),
         ("[[arm]]\nname = 'a'", ":1: arm[0] has no 'robot'"),

@@ -10,7 +10,8 @@ import pytest
 from tests.support.tools import finished
 
 from ikgen.cli.main import run
-from ikgen.model.maintainer import is_maintainer, name_and_email
+from ikgen.errors import UsageError
+from ikgen.model.maintainer import checked_maintainer, name_and_email
 from ikgen.projects.recorded_arms import arms_below
 from ikgen.records.codec import CodecError, Decoder
 from ikgen.records.request import Request
@@ -116,7 +117,8 @@ def test_a_folder_without_outputs_is_told(
 def test_maintainers_that_no_manifest_takes_are_refused(
     text: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert not is_maintainer(text)
+    with pytest.raises(UsageError, match="NAME <EMAIL>"):
+        checked_maintainer(text)
     with pytest.raises(CodecError, match="NAME <EMAIL>"):
         Decoder().table(Request, {"robot": "a.urdf", "maintainer": text}, "arm[0]")
     assert run(["from-urdf", "a.urdf", "--maintainer", text]) == 2

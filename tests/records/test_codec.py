@@ -78,7 +78,7 @@ def test_there_and_back() -> None:
 def test_what_does_not_fit(change: dict[str, Any], said: str) -> None:
     with pytest.raises(CodecError) as caught:
         Decoder(Path, strict=True).table(Outer, {**TABLE, **change}, "outer")
-    assert str(caught.value) == said
+    assert str(caught.value) == said and caught.value.hint
 
 
 def test_unknown_entries_are_passed_over_unless_strict() -> None:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from ikgen.derivation.joint_value import parse_joint_value
 from ikgen.errors import UsageError
-from ikgen.model.maintainer import is_maintainer
-from ikgen.model.module_name import identifier, is_module_name
+from ikgen.model.joint_relation import checked_relation
+from ikgen.model.maintainer import checked_maintainer
+from ikgen.model.module_name import checked_module_name
 from ikgen.records.request import Request
 
 __all__ = ["make_request", "parse_coupled", "parse_emit", "parse_free", "parse_locked"]
@@ -33,10 +34,8 @@ def make_request(
     trust: bool = False,
 ) -> Request:
     """The request that the options make; raises `UsageError` for text that does not parse."""
-    from ikgen.tasks import find_task
+    from ikgen.tasks import requested_task
 
-    if task is not None:
-        task = find_task(task, tool_axis).stem if tool_axis else find_task(task).name
     for folder in package_paths:
         if not folder.is_dir():
             hint = "name the folder that holds the package's folder"
@@ -45,7 +44,7 @@ def make_request(
         robot=robot,
         base=base,
         tip=tip,
-        task=task,
+        task=requested_task(task, tool_axis),
         tool_axis=tool_axis,
         free=parse_free(free),
         lock=parse_locked(lock),
@@ -53,8 +52,8 @@ def make_request(
         args=_arguments(args),
         package_paths=tuple(package_paths),
         calibration=calibration,
-        name=_module_name(name),
-        maintainer=_maintainer(maintainer),
+        name=_checked("--name", checked_module_name, name),
+        maintainer=_checked("--maintainer", checked_maintainer, maintainer),
         license=license,
         trust=trust,
     )
@@ -95,18 +94,10 @@ def parse_locked(texts: Sequence[str]) -> dict[str, float]:
 
 def parse_coupled(texts: Sequence[str]) -> dict[str, str]:
     """Joint -> relation of each --couple JOINT=SOURCE*k+c."""
-    from ikgen.model.joint_relation import read_relation
-
     found: dict[str, str] = {}
     for text in texts:
         joint, _, relation = text.partition("=")
-        try:
-            read_relation(relation)
-        except ValueError as error:
-            raise UsageError(
-                f"--couple {text}: {error}",
-                hint="for example --couple stage_2=stage_1*1+0, or --couple elbow=elbow*1+shoulder*-1",
-            ) from None
+        _checked(f"--couple {text}", checked_relation, relation)
         if not joint or joint in found:
             what = "given twice" if joint else "no joint named"
             raise UsageError(
@@ -152,20 +143,9 @@ def _arguments(texts: Sequence[str]) -> dict[str, str]:
     return found
 
 
-def _module_name(name: str | None) -> str | None:
-    """The name if it can be a module and a namespace."""
-    if name is not None and not is_module_name(name):
-        raise UsageError(
-            f"--name {name}: not an identifier", hint=f"for example --name {identifier(name)}"
-        )
-    return name
-
-
-def _maintainer(text: str | None) -> str | None:
-    """The maintainer if a manifest can say so."""
-    if text is not None and not is_maintainer(text):
-        raise UsageError(
-            f"--maintainer {text}: not written NAME <EMAIL>",
-            hint="for example --maintainer 'Ada Lovelace <ada@example.com>'",
-        )
-    return text
+def _checked(option: str, check: Callable[[str], str], text: str | None) -> str | None:
+    """The text of an option, None where it was not given, if it passes a check."""
+    try:
+        return None if text is None else check(text)
+    except UsageError as error:
+        raise UsageError(f"{option}: {error.message}", hint=error.hint) from None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import operator
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -13,8 +13,8 @@ import numpy as np
 from ikgen.derivation.joint_value import parse_joint_value
 from ikgen.errors import ArgumentError, IkgenError, shown
 from ikgen.importers.named_robots import is_named
-from ikgen.model.joint_relation import read_relation
-from ikgen.model.module_name import identifier, is_module_name
+from ikgen.model.joint_relation import checked_relation
+from ikgen.model.module_name import checked_module_name
 from ikgen.records.request import Request, xacro_texts
 
 __all__ = ["checked_count", "checked_flag", "checked_path", "checked_request", "wrong"]
@@ -89,17 +89,14 @@ def _text(argument: str, value: object, what: str) -> str | None:
 
 
 def _task(task: object, axis: str | None) -> str | None:
-    from ikgen.tasks import TASKS, find_task
+    from ikgen.tasks import TASKS, requested_task
 
     known = ", ".join(one.name for one in TASKS)
     text = _text("task", task, f"one of {known}")
     try:
-        if axis is None:
-            return None if text is None else find_task(text).name
-        named = find_task(text or "position-direction", axis).stem
+        return requested_task(text, axis)
     except IkgenError as error:
         raise ArgumentError(f"task: {error.message}", hint=error.hint) from None
-    return None if text is None else named
 
 
 def _held(free: object) -> dict[str, float | None]:
@@ -140,10 +137,7 @@ def _coupled(couple: object) -> dict[str, str]:
     for joint, relation in couple.items():
         if not isinstance(relation, str):
             raise wrong(f"couple: {joint}", relation, what)
-        try:
-            read_relation(relation)
-        except ValueError as error:
-            raise ArgumentError(f"couple: {joint}: {error}", hint=f"give {what}") from None
+        _passed(f"couple: {joint}", checked_relation, relation)
     return dict(couple)
 
 
@@ -204,12 +198,15 @@ def _folders(paths: object) -> tuple[Path, ...]:
 
 def _name(name: object) -> str | None:
     text = _text("name", name, "an identifier, which begins the names of files")
-    if text is not None and not is_module_name(text):
-        raise ArgumentError(
-            f"name: {shown(text)} is not an identifier of at most 100 characters",
-            hint=f'for example "{identifier(text)}"',
-        )
-    return text
+    return None if text is None else _passed("name", checked_module_name, text)
+
+
+def _passed(argument: str, check: Callable[[str], str], text: str) -> str:
+    """The text of an argument if it passes a check."""
+    try:
+        return check(text)
+    except IkgenError as error:
+        raise ArgumentError(f"{argument}: {error.message}", hint=error.hint) from None
 
 
 def checked_path(argument: str, path: object) -> Path:

@@ -6,7 +6,9 @@ import math
 import re
 from dataclasses import dataclass
 
-__all__ = ["Mimic", "Relation", "read_relation"]
+from ikgen.errors import UsageError
+
+__all__ = ["Mimic", "Relation", "checked_relation", "read_relation"]
 
 _NUMBER = r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 _ALONE = re.compile(r"[^*]+")
@@ -46,6 +48,16 @@ class Relation:
         (source, multiplier), *others = self.terms
         own = source == joint
         return None if others or own else Mimic(source, multiplier, self.offset)
+
+
+def checked_relation(text: str) -> str:
+    """The text; raises `UsageError` where `read_relation` cannot read it."""
+    try:
+        read_relation(text)
+    except ValueError as error:
+        hint = "write SOURCE*k+c, for example stage_1*1+0, or elbow*1+shoulder*-1"
+        raise UsageError(str(error), hint=hint) from None
+    return text
 
 
 def read_relation(text: str) -> Relation:

@@ -4,14 +4,21 @@ from __future__ import annotations
 
 import re
 
-__all__ = ["is_maintainer", "name_and_email"]
+from ikgen.errors import UsageError, shown
+
+__all__ = ["checked_maintainer", "name_and_email"]
 
 _FORM = re.compile(r" *([^<>]*[^<>\s]) *<([^<>@\s\"]+@[^<>@\s\"]+\.[^<>@\s.\"]+)> *")
 
 
-def is_maintainer(text: str) -> bool:
-    """Whether a text has the form that ROS manifests need."""
-    return text.isprintable() and _FORM.fullmatch(text) is not None
+def checked_maintainer(text: str) -> str:
+    """The text; raises `UsageError` where it has not the form that ROS manifests need."""
+    if not text.isprintable() or _FORM.fullmatch(text) is None:
+        raise UsageError(
+            f"{shown(text)} is not written NAME <EMAIL>",
+            hint="for example 'Ada Lovelace <ada@example.com>'",
+        )
+    return text
 
 
 def name_and_email(text: str) -> tuple[str, str]:

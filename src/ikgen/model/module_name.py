@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import keyword
 
-__all__ = ["identifier", "is_module_name"]
+from ikgen.errors import UsageError, shown
+
+__all__ = ["checked_module_name", "identifier", "is_module_name"]
 
 _LONGEST = 100
 """Characters: names of files, of which it is the beginning, have at most 255."""
@@ -18,6 +20,16 @@ def is_module_name(name: str) -> bool:
         and name.isidentifier()
         and not keyword.iskeyword(name)
     )
+
+
+def checked_module_name(name: str) -> str:
+    """The name; raises `UsageError` with one that could be meant."""
+    if not is_module_name(name):
+        raise UsageError(
+            f"{shown(name)} is not an identifier of at most {_LONGEST} characters",
+            hint=f"for example '{identifier(name)}'",
+        )
+    return name
 
 
 def identifier(name: str) -> str:

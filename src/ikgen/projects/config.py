@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from ikgen.errors import BadDescriptionError, UsageError
+from ikgen.errors import BadDescriptionError, IkgenError, UsageError
 from ikgen.importers.merge_conflict import conflict_or
 from ikgen.importers.named_robots import is_named
 from ikgen.importers.toml_text import parse_toml
@@ -17,6 +17,7 @@ from ikgen.projects.config_lines import line_of
 from ikgen.records.codec import CodecError, Decoder, inlined
 from ikgen.records.record import record_name, records_of
 from ikgen.records.request import Outputs, Request
+from ikgen.tasks import stem_and_axis
 
 __all__ = ["ArmConfig", "default_config", "load_config", "named_config"]
 
@@ -82,12 +83,7 @@ def load_config(path: Path) -> tuple[ArmConfig, ...]:
         arms = [(i, arm) for i, table in enumerate(tables) for arm in _arms(decoder, table, i)]
         _check_places(arms)
     except CodecError as error:
-        line = line_of(text, error.where)
-        hint = (
-            error.hint
-            or "the reference of ikgen.toml says what each entry is; ikgen init writes one"
-        )
-        raise _error(path, str(error), line=line, hint=hint) from None
+        raise _error(path, str(error), line=line_of(text, error.where), hint=error.hint) from None
     return tuple(arm for _, arm in arms)
 
 
@@ -99,7 +95,9 @@ def _arms(decoder: Decoder, table: Any, index: int) -> Iterator[ArmConfig]:
         return
     where = f"arm[{index}].calibration"
     if not files or not all(isinstance(file, str) for file in files):
-        raise CodecError(where, f"{files!r} is no list of files")
+        raise CodecError(
+            where, f"{files!r} is no list of files", 'write ["arm_1.yaml", "arm_2.yaml"]'
+        )
     for file in files:
         arm = _arm(decoder, {**table, "calibration": file}, index)
         name = f"{arm.name}_{identifier(Path(file).stem)}"
@@ -113,7 +111,11 @@ def _arm(decoder: Decoder, table: Any, index: int) -> ArmConfig:
         table = {"out": ".", **table}
     arm = decoder.table(ArmConfig, table, where)
     if arm.request.name is None:
-        raise CodecError(where, " has no 'name'")
+        raise CodecError(where, " has no 'name'", "add name: the names of its files begin with it")
+    try:
+        stem_and_axis(arm.request.task or "", arm.request.tool_axis)
+    except IkgenError as error:
+        raise CodecError(f"{where}.task", error.message, error.hint) from None
     for i, folder in enumerate(arm.request.package_paths):
         if not folder.is_dir():
             hint = "name the folder that holds the package's folder"

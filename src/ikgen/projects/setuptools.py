@@ -44,12 +44,20 @@ def generate_arms(root: Path) -> None:
     """Generate what is stale of a project's config; raises `ExecError`, which ends a build."""
     config = default_config(root)
     if config is None:
-        raise ExecError("the ikgen build hook finds no ikgen.toml and no [tool.ikgen]")
+        raise ExecError(
+            "the ikgen build hook finds no ikgen.toml and no [tool.ikgen]: write one (ikgen init ROBOT "
+            "does), or take BuildPy out of pyproject.toml"
+        )
     try:
         # One job: a worker process would run a setup.py without a main guard once more.
         outcomes = list(build_arms(load_config(config), workers=Workers(count=1)))
     except IkgenError as error:
-        raise ExecError(f"ikgen: {error.message}; {error.hint}") from None
+        raise _ended(error.message, error.hint) from None
     for outcome in outcomes:
         if outcome.exit_code:
-            raise ExecError(f"ikgen: {outcome.name}: {outcome.message}; {outcome.hint}")
+            raise _ended(f"{outcome.name}: {outcome.message}", outcome.hint)
+
+
+def _ended(message: str, hint: str) -> ExecError:
+    """The error that ends a build, with the way out where there is one."""
+    return ExecError("; ".join(filter(None, [f"ikgen: {message}", hint])))

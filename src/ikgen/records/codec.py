@@ -33,14 +33,20 @@ __all__ = [
 ]
 
 T = TypeVar("T")
-_WORDS: dict[type, str] = {str: "string", bool: "boolean", int: "number", float: "number"}
+_WORDS: dict[type, tuple[str, str]] = {
+    str: ("string", "write it in quotes"),
+    bool: ("boolean", "write true or false, without quotes"),
+    int: ("number", "write a whole number, without quotes"),
+    float: ("number", "write a number, without quotes"),
+}
+"""What values are, and how they are written."""
 _READ, _INLINE, _UNCODED = "ikgen.read", "ikgen.inline", "ikgen.uncoded"
 
 
 class CodecError(Exception):
     """A table that does not fit: where (`arm[0].name`), what is wrong, and a way out."""
 
-    def __init__(self, where: str, problem: str, hint: str = "") -> None:
+    def __init__(self, where: str, problem: str, hint: str) -> None:
         super().__init__(f"{where}{'' if problem.startswith((' ', ':')) else ': '}{problem}")
         self.where = where
         self.hint = hint
@@ -67,7 +73,9 @@ def read_free(value: Any, where: str) -> Any:
         return {str(name): None for name in value}
     if value is not None and not isinstance(value, Mapping):
         raise CodecError(
-            where, f"{value!r} is neither a list of joints nor a table of their values"
+            where,
+            f"{value!r} is neither a list of joints nor a table of their values",
+            'write ["JOINT"], or { JOINT = 0.5 }',
         )
     return value
 
@@ -103,7 +111,8 @@ class Decoder:
     def table(self, kind: type[T], value: Any, where: str) -> T:
         """The dataclass `kind` of a table; raises `CodecError`."""
         if not isinstance(value, Mapping):
-            raise CodecError(where, " is no table")
+            hint = f"write a table of its entries: {', '.join(sorted(_names(kind)))}"
+            raise CodecError(where, " is no table", hint)
         if self.strict:
             known = sorted(_names(kind))
             for name in value:
@@ -121,7 +130,7 @@ class Decoder:
             elif entry.name in table:
                 found[entry.name] = self._entry(entry, hint, table[entry.name], where)
             elif entry.default is entry.default_factory is dataclasses.MISSING:
-                raise CodecError(where, f" has no '{entry.name}'")
+                raise CodecError(where, f" has no '{entry.name}'", f"add {entry.name}")
         return kind(**found)
 
     def _entry(self, entry: dataclasses.Field[Any], hint: Any, value: Any, where: str) -> Any:
@@ -137,11 +146,12 @@ class Decoder:
             return None if value is None else self._value(known, value, where)
         if origin is tuple:
             if not isinstance(value, list):
-                raise CodecError(where, f"{value!r} is not a list")
+                raise CodecError(where, f"{value!r} is not a list", "write it in brackets: [...]")
             return tuple(self._value(inner[0], x, f"{where}[{i}]") for i, x in enumerate(value))
         if origin is not None:  # Mapping[str, ...]
             if not isinstance(value, Mapping):
-                raise CodecError(where, f"{value!r} is not a table")
+                hint = "write NAME = VALUE in braces: { ... }"
+                raise CodecError(where, f"{value!r} is not a table", hint)
             return {name: self._value(inner[1], x, f"{where}.{name}") for name, x in value.items()}
         if dataclasses.is_dataclass(hint):
             kind: type[Any] = hint  # type: ignore[assignment]
@@ -153,13 +163,14 @@ def _plain(kind: type, value: Any, where: str) -> Any:
     """A text, boolean or number; a number is no boolean, and finite."""
     allowed = (int, float) if kind is float else kind
     if not isinstance(value, allowed) or (isinstance(value, bool) and kind is not bool):
-        raise CodecError(where, f"{value!r} is not a {_WORDS[kind]}")
+        word, hint = _WORDS[kind]
+        raise CodecError(where, f"{value!r} is not a {word}", hint)
     try:
         plain = kind(value)
     except OverflowError:  # an integer that is larger than any float
         plain = math.inf
     if isinstance(plain, float) and not math.isfinite(plain):
-        raise CodecError(where, f"{shown(value)} is not a finite number")
+        raise CodecError(where, f"{shown(value)} is not a finite number", "give a finite one")
     return plain
 
 

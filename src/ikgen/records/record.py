@@ -37,6 +37,7 @@ __all__ = [
 
 GENERATOR = "ikgen"
 SUFFIX = "_ik.json"
+_AGAIN = f"generate the outputs again; *{SUFFIX} is for records alone"
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,15 +174,17 @@ def read_record(path: Path) -> Record:
         decoder = Decoder(lambda x: Path(x) if is_named(x) else relative_to_cwd(folder / x))
         record = decoder.table(Record, data, "the record")
         if record.request.name is None:
-            raise CodecError("the record", " has no 'name'")
+            raise CodecError("the record", " has no 'name'", _AGAIN)
         if record.generator != GENERATOR:
-            raise CodecError("the record.generator", f"'{record.generator}' is not '{GENERATOR}'")
+            raise CodecError(
+                "the record.generator", f"'{record.generator}' is not '{GENERATOR}'", _AGAIN
+            )
     except OSError as error:
         raise BadDescriptionError(
             error.strerror or str(error), file=str(path), hint="generate it first (ikgen build)"
         ) from None
     except (ValueError, RecursionError, CodecError) as error:
-        hint = conflict_or(text, f"generate the outputs again; *{SUFFIX} is for records alone")
+        hint = conflict_or(text, _AGAIN)
         raise BadDescriptionError(
             f"not a record of ikgen: {error}", file=str(path), hint=hint
         ) from None

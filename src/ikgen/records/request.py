@@ -7,16 +7,17 @@ record (`ikgen.records.record`): one spelling, read and written by `ikgen.record
 from __future__ import annotations
 
 import shlex
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from ikgen.model.joint_relation import Mimic, Relation, read_relation
-from ikgen.model.maintainer import is_maintainer
-from ikgen.model.module_name import is_module_name
+from ikgen.errors import IkgenError
+from ikgen.model.joint_relation import Mimic, Relation, checked_relation, read_relation
+from ikgen.model.maintainer import checked_maintainer
+from ikgen.model.module_name import checked_module_name
 from ikgen.records.codec import CodecError, coded, read_free, uncoded
-from ikgen.tasks import AXES
+from ikgen.tasks import checked_axis
 
 __all__ = ["Outputs", "Request", "is_table", "xacro_texts"]
 
@@ -26,10 +27,16 @@ def is_table(robot: Path) -> bool:
     return robot.suffix.lower() == ".toml"
 
 
-def _name(value: Any, where: str) -> Any:
-    if isinstance(value, str) and not is_module_name(value):
-        raise CodecError(where, f"the name '{value}' is not an identifier")
-    return value
+def _passes(check: Callable[[str], str]) -> Callable[[Any, str], Any]:
+    """The reader of an entry whose text has to pass a check."""
+
+    def read(value: Any, where: str) -> Any:
+        try:
+            return check(value) if isinstance(value, str) else value
+        except IkgenError as error:
+            raise CodecError(where, error.message, error.hint) from None
+
+    return read
 
 
 def xacro_texts(args: Mapping[str, Any]) -> dict[str, str]:
@@ -41,25 +48,11 @@ def _arguments(value: Any, where: str) -> Any:
     return xacro_texts(value) if isinstance(value, Mapping) else value
 
 
-def _axis(value: Any, where: str) -> Any:
-    if isinstance(value, str) and value not in AXES:
-        raise CodecError(where, f"the tool axis '{value}' is none of {', '.join(AXES)}")
-    return value
-
-
 def _relations(value: Any, where: str) -> Any:
     """Relations between joints, each a text that can be read."""
+    read = _passes(checked_relation)
     for joint, text in value.items() if isinstance(value, Mapping) else ():
-        try:
-            read_relation(text if isinstance(text, str) else repr(text))
-        except ValueError as error:
-            raise CodecError(f"{where}.{joint}", str(error)) from None
-    return value
-
-
-def _maintainer(value: Any, where: str) -> Any:
-    if isinstance(value, str) and not is_maintainer(value):
-        raise CodecError(where, f"the maintainer '{value}' is not written NAME <EMAIL>")
+        read(text, f"{where}.{joint}")
     return value
 
 
@@ -71,7 +64,7 @@ def _some(value: Any, where: str) -> Any:
 
 def _positive(value: Any, where: str) -> Any:
     if isinstance(value, int) and value < 1:
-        raise CodecError(where, f"{value} is less than 1")
+        raise CodecError(where, f"{value} is less than 1", "give a whole number from 1 on")
     return value
 
 
@@ -90,15 +83,15 @@ class Request:
     base: str | None = None
     tip: str | None = None
     task: str | None = None
-    tool_axis: str | None = field(default=None, metadata=coded(_axis))
+    tool_axis: str | None = field(default=None, metadata=coded(_passes(checked_axis)))
     free: Mapping[str, float | None] = field(default_factory=dict, metadata=coded(read_free))
     lock: Mapping[str, float] = field(default_factory=dict)
     couple: Mapping[str, str] = field(default_factory=dict, metadata=coded(_relations))
     args: Mapping[str, str] = field(default_factory=dict, metadata=coded(_arguments))
     package_paths: tuple[Path, ...] = ()
     calibration: Path | None = None
-    name: str | None = field(default=None, metadata=coded(_name))
-    maintainer: str | None = field(default=None, metadata=coded(_maintainer))
+    name: str | None = field(default=None, metadata=coded(_passes(checked_module_name)))
+    maintainer: str | None = field(default=None, metadata=coded(_passes(checked_maintainer)))
     license: str | None = None
     # Only who runs ikgen may trust a file: neither a config nor a record says so.
     trust: bool = field(default=False, metadata=uncoded())

@@ -15,8 +15,11 @@ __all__ = [
     "TASKS",
     "WHOLE_POSE",
     "Task",
+    "checked_axis",
     "find_task",
+    "requested_task",
     "smaller_tasks",
+    "stem_and_axis",
     "task_names",
 ]
 
@@ -174,16 +177,40 @@ def find_task(name: str, axis: str | None = None) -> Task:
     """The task of a name or alias, ikgen's own or another package's, by the tool's axis (None: the name's,
     as in `position-pitch:x`, or the task's first); raises `UnknownNameError` with what there is,
     `UsageError` for an axis of a task that has none, or for two of them."""
+    stem, axis = stem_and_axis(name, axis)
+    task = _named(stem)
+    return task if axis is None else task.along(axis)
+
+
+def stem_and_axis(name: str, axis: str | None = None) -> tuple[str, str | None]:
+    """A task's name without the tool's axis, and that axis, which is in the name or named apart; raises
+    `UnknownNameError` for an axis that there is not, `UsageError` for two of them."""
     stem, colon, own = name.partition(":")
     if colon and axis not in (None, own):
         raise UsageError(
             f"the task '{name}' goes by another axis than {axis}", hint="name the tool's axis once"
         )
-    axis = axis or (own if colon else None)
-    if axis is not None and axis not in AXES:
+    axis = own if colon else axis
+    if axis is not None:
+        checked_axis(axis)
+    return stem, axis
+
+
+def checked_axis(axis: str) -> str:
+    """The tool's axis; raises `UnknownNameError` for one that there is not."""
+    if axis not in AXES:
         raise UnknownNameError("tool axis", axis, AXES)
-    task = _named(stem)
-    return task if axis is None else task.along(axis)
+    return axis
+
+
+def requested_task(name: str | None, axis: str | None) -> str | None:
+    """What a request says of a task that is there: its name, without an axis that is named apart. Raises
+    as `find_task` does."""
+    if axis is not None:
+        checked_axis(axis)
+    if name is None:
+        return None
+    return find_task(name).name if axis is None else find_task(name, axis).stem
 
 
 def _named(name: str) -> Task:
