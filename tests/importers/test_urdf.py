@@ -14,6 +14,7 @@ from ikgen.errors import BadDescriptionError, UsageError
 from ikgen.importers import load_tree
 from ikgen.importers.xml_document import LARGEST_FILE
 from ikgen.model.joint_tree import JointType, Mimic
+from ikgen.verify.oracle import PinocchioOracle
 
 INF = math.inf
 
@@ -59,6 +60,52 @@ def test_a_joint_as_written(read):
     assert (only.limits.lower, only.limits.upper, only.line) == (-2.0, 3.0, 4)
     assert tree.source.text == text and tree.source.warnings == ()
     assert tree.source.sha256 == hashlib.sha256(text.encode()).hexdigest()
+
+
+QUATERNION = 'quat_xyzw="0.3 -0.4 0.5 0.8"'
+
+
+@pytest.mark.parametrize("version", ["1.1", " 1.2"])
+def test_quaternions_of_later_versions_are_rotations(read, version):
+    text = robot(joint(f"<origin {QUATERNION}/>{LIMIT}"), attributes=f'name="r" version="{version}"')
+    tree = read(text)
+    unit = np.array([0.3, -0.4, 0.5, 0.8]) / math.sqrt(1.14)
+    cross = np.array([[0, -unit[2], unit[1]], [unit[2], 0, -unit[0]], [-unit[1], unit[0], 0]])
+    expected = np.eye(3) + 2 * (unit[3] * cross + cross @ cross)
+    assert np.abs(tree.joints[0].T_parent_child[:3, :3] - expected).max() < 1e-15
+    assert tree.source.warnings == ()
+    poses = PinocchioOracle(tree, "a", "b", ["j"]).forward(np.zeros((1, 1)))
+    assert np.abs(poses[0, :3, :3] - expected).max() < 1e-12
+
+
+@pytest.mark.parametrize("version", ["", 'version="1.0"'])
+def test_quaternions_of_the_first_version_are_none(read, version, capfd):
+    tree = read(robot(joint(f'<origin rpy="0 0 1" {QUATERNION}/>{LIMIT}'), attributes=version))
+    assert tree.joints[0].T_parent_child[0, 0] == math.cos(1.0)
+    assert [w for w in tree.source.warnings if "quat_xyzw of joint 'j' ignored" in w]
+    poses = PinocchioOracle(tree, "a", "b", ["j"]).forward(np.zeros((1, 1)))
+    assert np.abs(poses[0] - tree.joints[0].T_parent_child).max() < 1e-12
+    assert capfd.readouterr().err == ""
+
+
+@pytest.mark.parametrize(
+    ("attributes", "said"),
+    [
+        (f'rpy="0 0 0" {QUATERNION}', "has both rpy and quat_xyzw"),
+        ('quat_xyzw="0 0 0 0"', "quat_xyzw is zero"),
+        ('quat_xyzw="1 0 0"', "has 3 numbers where 4 belong"),
+    ],
+)
+def test_quaternions_that_tell_no_rotation_are_refused(read, attributes, said):
+    with pytest.raises(BadDescriptionError, match=said) as caught:
+        read(robot(joint(f"<origin {attributes}/>{LIMIT}"), attributes='version="1.1"'))
+    assert caught.value.line == 4 and caught.value.hint
+
+
+def test_a_space_that_is_no_plain_one_is_named(read):
+    with pytest.raises(BadDescriptionError, match="is not a number") as caught:
+        read(robot(joint(f'<origin xyz="0.2\u00a00 0.1"/>{LIMIT}')))
+    assert "no plain one" in caught.value.hint
 
 
 def test_roll_pitch_yaw_turn_about_fixed_axes(read):

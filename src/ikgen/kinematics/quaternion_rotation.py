@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ikgen.kinematics.fixed_order import length
 from ikgen.model.arrays import Array
 
 __all__ = ["quaternion", "rotation"]
@@ -25,7 +26,7 @@ def quaternion(R: Array) -> Array:
 
 def rotation(q: Array) -> Array:
     """The rotation (3, 3) of a quaternion w, x, y, z (4,), which need not be of length 1."""
-    w, x, y, z = (q / np.linalg.norm(q)).tolist()
+    w, x, y, z = (q / length(q)).tolist()
     return np.array([
         [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
         [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],

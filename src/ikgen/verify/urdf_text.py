@@ -16,6 +16,7 @@ from dataclasses import dataclass, field
 from xml.parsers import expat
 
 from ikgen.errors import BadDescriptionError, UnknownNameError
+from ikgen.importers.urdf.urdf_version import has_quaternions
 
 __all__ = ["JOINT_PREFIX", "KinematicText", "read_kinematic_text"]
 
@@ -131,6 +132,11 @@ def read_kinematic_text(text: str, base_link: str, tip_link: str) -> KinematicTe
     joints = robot.findall("joint")
     path = _path(joints, (base_link, tip_link))
     reduced = ET.Element("robot", {"name": robot.get("name") or "robot"})
+    if has_quaternions(robot.get("version")):
+        reduced.set("version", "1.1")
+    else:  # which Pinocchio would tell on stderr
+        for origin in robot.iter("origin"):
+            origin.attrib.pop("quat_xyzw", None)
     for name in dict.fromkeys([base_link, tip_link, *(end for j in path for end in _ends(j))]):
         ET.SubElement(reduced, "link", {"name": name})
     reduced.extend(_copy_joint(joint) for joint in path)

@@ -12,6 +12,7 @@ _NUMBER = re.compile(
     r"[+-]?(?:(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:e[+-]?[0-9]+)?|inf(?:inity)?)", re.IGNORECASE
 )
 # Three numbers with all 767 digits that a double can have, and room for spaces.
+_SPACES = re.compile(r"[ \t\r\n]+")
 _LONGEST_TEXT = 4000
 _LONGEST_SHOWN = 60
 
@@ -46,7 +47,7 @@ def parse_numbers(
             f"'{shown}' is a xacro expression",
             "this is a xacro file: rename it to .urdf.xacro, or expand it with xacro first",
         )
-    numbers = tuple(_number(word, shown, finite) for word in text.split())
+    numbers = tuple(_number(word, shown, finite) for word in _SPACES.split(text) if word)
     if len(numbers) != count:
         raise BadValueError(
             f"'{shown}' has {len(numbers)} numbers where {count} belong",
@@ -68,7 +69,9 @@ def _number(word: str, shown: str, finite: bool) -> float:
         if not finite or abs(value) != float("inf"):
             return value
         raise BadValueError(f"'{shown}' is not finite", "write a finite number")
-    if "," in word:
+    if any(map(str.isspace, word)):
+        hint = "a space in it is no plain one, as of text that was copied from a page: type it anew"
+    elif "," in word:
         hint = "separate numbers by spaces, without commas"
     elif word.count(".") > 1:
         hint = f"'{shortened(word)}' has more than one decimal point"

@@ -15,8 +15,10 @@ from ikgen.importers.urdf.attribute_values import (
     shortened,
 )
 from ikgen.importers.urdf.joint_limits import DEGREES_ABOVE, UNLIMITED, joint_limits
+from ikgen.importers.urdf.urdf_version import has_quaternions
 from ikgen.importers.xml_document import Element, Place, children
 from ikgen.kinematics.fixed_order import length
+from ikgen.kinematics.quaternion_rotation import rotation
 from ikgen.kinematics.rigid import read_only, rotation_rpy
 from ikgen.model.arrays import Array
 from ikgen.model.joint_tree import Joint, JointType, Limits, Mimic
@@ -135,14 +137,38 @@ def _origin(joint: Element, name: str, place: Place) -> Array:
     origin = _only_child(joint, "origin", name, place)
     if origin is not None:
         T[:3, 3] = _vector(origin, "xyz", (0.0, 0.0, 0.0), name, place, _LONGEST)
-        rpy = _vector(origin, "rpy", (0.0, 0.0, 0.0), name, place)
-        if max(map(abs, rpy)) > DEGREES_ABOVE:
-            angles = " ".join(f"{angle:g}" for angle in rpy)
-            place.warn(
-                origin, f"joint '{name}': rpy {angles} looks like degrees: taken as rad", name
-            )
-        T[:3, :3] = rotation_rpy(*rpy)
+        T[:3, :3] = _rotation(origin, name, place)
     return T
+
+
+def _rotation(origin: Element, name: str, place: Place) -> Array:
+    """The rotation (3, 3) of an `<origin>`, by roll, pitch and yaw or as a quaternion."""
+    quaternion = origin.get("quat_xyzw")
+    if quaternion is not None and not has_quaternions(
+        origin.getroottree().getroot().get("version")
+    ):
+        said = f"quat_xyzw of joint '{name}' ignored, as a URDF has it from version 1.1 on"
+        place.warn(origin, f'{said}: write <robot version="1.1"> where it is meant', name)
+    elif quaternion is not None:
+        return _quaternion_rotation(origin, name, place)
+    rpy = _vector(origin, "rpy", (0.0, 0.0, 0.0), name, place)
+    if max(map(abs, rpy)) > DEGREES_ABOVE:
+        angles = " ".join(f"{angle:g}" for angle in rpy)
+        place.warn(origin, f"joint '{name}': rpy {angles} looks like degrees: taken as rad", name)
+    return rotation_rpy(*rpy)
+
+
+def _quaternion_rotation(origin: Element, name: str, place: Place) -> Array:
+    if origin.get("rpy") is not None:
+        message = f"joint '{name}' has both rpy and quat_xyzw"
+        raise place.error(origin, message, "keep one of them: ROS refuses both")
+    try:
+        x, y, z, w = parse_numbers(origin.get("quat_xyzw"), 4, largest=_LONGEST)
+    except BadValueError as bad:
+        raise _bad(origin, name, "quat_xyzw", bad, place) from None
+    if math.hypot(x, y, z, w) < _AXIS_SHORTEST:
+        raise place.error(origin, f"joint '{name}': quat_xyzw is zero", "write 0 0 0 1 for no turn")
+    return rotation(np.array((w, x, y, z)))
 
 
 def _axis(joint: Element, name: str, place: Place) -> Array:
