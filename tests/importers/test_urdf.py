@@ -67,7 +67,9 @@ QUATERNION = 'quat_xyzw="0.3 -0.4 0.5 0.8"'
 
 @pytest.mark.parametrize("version", ["1.1", " 1.2"])
 def test_quaternions_of_later_versions_are_rotations(read, version):
-    text = robot(joint(f"<origin {QUATERNION}/>{LIMIT}"), attributes=f'name="r" version="{version}"')
+    text = robot(
+        joint(f"<origin {QUATERNION}/>{LIMIT}"), attributes=f'name="r" version="{version}"'
+    )
     tree = read(text)
     unit = np.array([0.3, -0.4, 0.5, 0.8]) / math.sqrt(1.14)
     cross = np.array([[0, -unit[2], unit[1]], [unit[2], 0, -unit[0]], [-unit[1], unit[0], 0]])

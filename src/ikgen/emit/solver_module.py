@@ -186,7 +186,7 @@ class SolverModule:
 
     @property
     def size(self) -> float:
-        """Length (m) that errors of position are taken relative to, at least 1."""
+        """Length (m) that errors of position are taken relative to: 1 but for large and tiny arms."""
         return position_unit(self.dh)
 
     def period(self, joint: int) -> float:

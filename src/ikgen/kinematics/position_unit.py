@@ -11,18 +11,27 @@ from ikgen.model.dh import DHChain
 __all__ = ["position_unit"]
 
 _CONFIGURATIONS = 64
+_TINY = 0.05
+"""Arms whose links are all shorter (m) are tiny: what their joints move is little beside a metre."""
+
+_SHORTEST = 1e-4
 _DIGITS = 2
 """To which a reach is rounded: round-off, which differs between machines, is not in it."""
 
 
 def position_unit(dh: DHChain) -> float:
-    """A length (m), at least 1: the largest entry of a link's translation, or as far as the tip comes from
-    the base where that is less. DH parameters put the frame of an axis that is nearly parallel to the next
-    many times as far away as the arm reaches."""
+    """A length (m): 1 for arms of a usual size, more for large ones and less for tiny ones.
+
+    It is the largest entry of a link's translation, or as far as the tip comes from the base where that is
+    less: DH parameters put the frame of an axis that is nearly parallel to the next many times as far away
+    as the arm reaches.
+    """
     largest = max(float(np.abs(F[:3, 3]).max()) for F in dh.file_frames)
-    if dh.symbols or largest <= 1.0:
+    tiny = largest < _TINY and all(row.revolute for row in dh.rows)
+    if dh.symbols or (largest <= 1.0 and not tiny):
         return max(1.0, largest)
     low, high = joint_box(dh, 1.0)
     q = np.random.default_rng(0).uniform(low, high, (_CONFIGURATIONS, dh.dof))
     farthest = float(np.linalg.norm(file_forward(dh, q)[:, :3, 3], axis=1).max())
-    return max(1.0, min(largest, float(f"{farthest:.{_DIGITS}g}")))
+    reach = min(largest, float(f"{farthest:.{_DIGITS}g}"))
+    return max(reach, _SHORTEST if tiny else 1.0)
