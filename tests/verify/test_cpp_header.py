@@ -36,7 +36,7 @@ HEADER = r"""
 namespace planar_ik {
 inline constexpr int kDof = 2, kFree = 0, kMaxSolutions = 2;
 using Joints = Eigen::Matrix<double, kDof, 1>;
-enum class Status { Ok, Unreachable, Limits, Invalid };
+enum class Status { Ok, Unreachable, Limits, Invalid, Singular };
 struct Solutions {
   Status status = Status::Ok;
   int count = 0;
