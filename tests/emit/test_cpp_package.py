@@ -68,6 +68,7 @@ def test_the_page_says_what_is_held(tmp_path: Path) -> None:
         assert f"`Options::free`: `{held}`." in page
 
 
+@pytest.mark.long
 @pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER)
 def test_release_builds_of_later_standards_have_no_warnings(tmp_path: Path) -> None:
     """At -O3 compilers look for values that were never set, and C++20 deprecates much that C++17 takes."""
