@@ -75,7 +75,6 @@ class Inspection:
     @property
     def warnings(self) -> tuple[str, ...]:
         """What was odd in the file, that joints are not independent, or that some hardly move."""
-
         if self.reading is not None:
             lost = lost_freedom(self.reading, self.reading.dh.free)
             idle, taken = "", self.taken
