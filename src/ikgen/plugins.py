@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass, field
+from importlib import import_module
 from importlib.metadata import EntryPoint, entry_points
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from ikgen.errors import IkgenError, PlugInError
 
-__all__ = ["GROUPS", "PlugIn", "PlugInGroup", "find_plug_in", "plug_ins"]
+__all__ = ["GROUPS", "PlugIn", "PlugInGroup", "blaming", "find_plug_in", "named_object", "plug_ins"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,3 +109,14 @@ def _plug_in(group: str, entry: EntryPoint) -> PlugIn:
     dist = entry.dist
     package = f"{dist.name} {dist.version}" if dist is not None else "an unnamed package"
     return PlugIn(group, entry.name, entry.value, package, entry)
+
+
+def blaming(plug_in: PlugIn | None) -> AbstractContextManager[None]:
+    """`PlugIn.blamed` of a row of another package; of ikgen's own (None) failures are ikgen's."""
+    return nullcontext() if plug_in is None else plug_in.blamed()
+
+
+def named_object(target: str) -> Any:
+    """What "module:name" names; the module is imported for it."""
+    module, name = target.split(":")
+    return getattr(import_module(module), name)

@@ -47,7 +47,7 @@ def unsolved_error(found: Unsolved, request: Request) -> UnsolvedChainError:
     )
     cause, advice = _same_line(dh) or _counted(dh, task)
     hint = f"{request.command()} {advice}"
-    if request.task is not None and dh.dof - len(dh.free) > task.freedoms:
+    if request.task is not None and dh.moving > task.freedoms:
         hint = f"{replace(request, task=None, tool_axis=None).command()}\nor {hint}"
     return UnsolvedChainError(
         f"no closed form found for the task '{task.name}': {cause}",
@@ -99,9 +99,8 @@ def _known_gaps(derivation: Derivation) -> list[str]:
     if plan is not None and plan.recall < 1.0:
         found.append(f"the elimination finds {plan.recall:.1%} of them")
     if over_constrained(dh, derivation.task):
-        moving = dh.dof - len(dh.free)
         fixed = freedoms_fixed(dh, derivation.task)
-        found.append(f"{counted(moving, 'joint move')} and the task fixes {fixed} freedoms")
+        found.append(f"{counted(dh.moving, 'joint move')} and the task fixes {fixed} freedoms")
     return found
 
 
@@ -109,8 +108,8 @@ def _counted(dh: DHChain, task: Task) -> tuple[str, str]:
     """What the numbers of joints and of freedoms tell, and what to add to the command."""
     from ikgen.tasks.fitting import freedoms_moved
 
-    moving = dh.dof - len(dh.free)
-    move = f"{moving} joint{' moves' if moving == 1 else 's move'}"
+    moving = dh.moving
+    move = counted(moving, "joint move")
     if moving > task.freedoms:
         count = moving - task.freedoms
         these = "one of them has" if count == 1 else f"{count} of them have"

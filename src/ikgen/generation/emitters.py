@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
-from contextlib import AbstractContextManager, nullcontext
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
-from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ikgen.errors import UnknownNameError, UsageError
-from ikgen.plugins import PlugIn, find_plug_in, plug_ins
+from ikgen.plugins import PlugIn, blaming, find_plug_in, named_object, plug_ins
 
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Derivation
@@ -59,16 +57,16 @@ class Emitter:
                 hint="emit python or cpp, or ask its package for it",
             )
         more = (reports or {},) if self.tells_verification else ()
-        with self._blamed():
-            texts: dict[str, str] = _load(self.target)(derivation, *more)
+        with blaming(self.plug_in):
+            texts: dict[str, str] = named_object(self.target)(derivation, *more)
         return texts
 
     def runner(self, arm: EmittedArm, folder: Path) -> Runner | None:
         """What verification calls, or None."""
         if self.runner_target is None:
             return None
-        with self._blamed():
-            runner: Runner = _load(self.runner_target)(arm, folder)
+        with blaming(self.plug_in):
+            runner: Runner = named_object(self.runner_target)(arm, folder)
         return runner
 
     def main_among(self, files: Iterable[str], name: str) -> str | None:
@@ -79,15 +77,6 @@ class Emitter:
             if len(parts) == len(wanted) and all(map(fnmatchcase, parts, wanted)):
                 return file
         return None
-
-    def _blamed(self) -> AbstractContextManager[None]:
-        return nullcontext() if self.plug_in is None else self.plug_in.blamed()
-
-
-def _load(target: str) -> Callable[..., Any]:
-    module, function = target.split(":")
-    loaded: Callable[..., Any] = getattr(import_module(module), function)
-    return loaded
 
 
 EMITTERS: tuple[Emitter, ...] = (

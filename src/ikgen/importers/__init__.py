@@ -8,7 +8,6 @@ the entry-point group `ikgen.importers`, each entry an `Importer`.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
 from importlib import import_module
 from pathlib import Path
@@ -17,7 +16,7 @@ from typing import TYPE_CHECKING, Protocol, cast
 
 from ikgen.errors import BadDescriptionError, IkgenError, PlugInError, UsageError
 from ikgen.importers.named_robots import find_robot, is_named
-from ikgen.plugins import PlugIn, plug_ins
+from ikgen.plugins import PlugIn, blaming, named_object, plug_ins
 
 if TYPE_CHECKING:
     from ikgen.model.joint_tree import JointTree
@@ -72,15 +71,9 @@ class Importer:
         """The arguments that a file takes, with their defaults."""
         if self.arguments_target is None:
             return {}
-        module, function = self.arguments_target.split(":")
-        with self._blamed():
-            found: dict[str, str | None] = getattr(import_module(module), function)(
-                path, package_paths
-            )
+        with blaming(self.plug_in):
+            found: dict[str, str | None] = named_object(self.arguments_target)(path, package_paths)
         return found
-
-    def _blamed(self) -> AbstractContextManager[None]:
-        return nullcontext() if self.plug_in is None else self.plug_in.blamed()
 
     def read(
         self,
@@ -91,7 +84,7 @@ class Importer:
         trust: bool = False,
     ) -> JointTree:
         """What the module's `read` gives; see `load_tree`."""
-        with self._blamed():
+        with blaming(self.plug_in):
             module = import_module(self.module)
             if self.computes:
                 careful = cast(_CarefulReader, module)

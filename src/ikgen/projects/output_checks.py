@@ -18,6 +18,7 @@ from ikgen.verify.shared_work import SharedWork
 if TYPE_CHECKING:
     from ikgen.derivation.progress import Progress
     from ikgen.emit.derivation import Reading
+    from ikgen.generation.emitters import Emitter
     from ikgen.generation.runners_ahead import RunnersAhead
     from ikgen.records.record import Record
     from ikgen.records.request import Outputs
@@ -129,20 +130,23 @@ class OutputChecks:
 
     def _file(self, emitter: str) -> Path:
         """The file to name in messages about an output."""
-        from ikgen.generation.emitters import find_emitter
-
-        try:
-            main = find_emitter(emitter).main_among(self.record.files, self.record.name)
-        except IkgenError:  # of a package that is gone, or that is broken
-            main = None
+        known = _emitter(emitter)
+        main = known.main_among(self.record.files, self.record.name) if known else None
         return self.record.path if main is None else self.record.folder / main
 
 
 def _compiles(name: str) -> bool:
     """Whether an output is compiled before it is run: others are checked meanwhile."""
+    known = _emitter(name)
+    return known is not None and known.compiled
+
+
+def _emitter(name: str) -> Emitter | None:
+    """The emitter of that name; None where its package is gone or broken, which is told where it is to
+    run."""
     from ikgen.generation.emitters import find_emitter
 
     try:
-        return find_emitter(name).compiled
-    except IkgenError:  # told where it is to run
-        return False
+        return find_emitter(name)
+    except IkgenError:
+        return None
