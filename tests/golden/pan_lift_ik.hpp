@@ -378,53 +378,72 @@ template <class Y, class X, int N = kCommon<Y, X>>
   return select(-1.2e-16 * ax > y, -third, third);  // an angle that rounds to -pi is pi
 }
 
-// --- joint range ---------------------------------------------------------------------------------
-inline double shortest(double gap, double turn = kTurn) noexcept {
-  return gap > 0.5 * turn ? gap - turn : gap < -0.5 * turn ? gap + turn : gap;
-}
-template <int N, bool H>
-[[gnu::always_inline]] inline Lanes<N> shortest(const LanesOf<N, H>& gap, double turn = kTurn) noexcept {
-  return gap + select(gap > 0.5 * turn, -turn, select(-0.5 * turn > gap, turn, 0.0));
-}
+// --- held aim ------------------------------------------------------------------------------------
+template <class Arm, bool kAngle = Arm::kArmAngle> struct HeldAim {
+  static constexpr int kCount = 0;  // errors beside the pose's
+  Eigen::Isometry3d pose;
 
-struct Range {
-  const double* lower;
-  const double* upper;
-};
+  HeldAim(const Eigen::Isometry3d& T, const std::array<double, Arm::kFree>&) noexcept : pose(T) {}
+  explicit HeldAim(const Eigen::Isometry3d& T) noexcept : pose(T) {}
 
-template <int N> struct Unbounded {
-  double lower[N], upper[N];
-  constexpr Unbounded() noexcept : lower(), upper() {
-    for (int i = 0; i < N; ++i) {
-      lower[i] = -kInfinity;
-      upper[i] = kInfinity;
-    }
+  static HeldAim own(const double*) noexcept { return HeldAim(Eigen::Isometry3d::Identity()); }
+
+  static void values(const double* q, std::array<double, Arm::kFree>& held) noexcept {
+    for (std::size_t k = 0; k < Arm::kFreeJoints.size(); ++k) held.data()[k] = q[Arm::kFreeJoints.data()[k]];
   }
 };
-template <int N> inline constexpr Unbounded<N> kUnbounded{};
 
-template <int N> struct Placed {
-  Lanes<N> q, off;
+// --- rigid frame ---------------------------------------------------------------------------------
+template <class X> struct FrameOf {
+  X R[3][3], p[3];
+};
+using Frame = FrameOf<double>;
+
+template <class X> inline FrameOf<X> inverse(const FrameOf<X>& a) noexcept {
+  FrameOf<X> out;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) out.R[i][j] = a.R[j][i];
+    out.p[i] = -(a.R[0][i] * a.p[0] + a.R[1][i] * a.p[1] + a.R[2][i] * a.p[2]);
+  }
+  return out;
+}
+
+// --- lane sines ----------------------------------------------------------------------------------
+template <int N> struct Sines {
+  Lanes<N> cosine, sine;
 };
 
+template <int N, bool H> [[gnu::always_inline]] inline Lanes<N> nearest(const LanesOf<N, H>& x) noexcept {
+  constexpr double kShift = 6755399441055744.0;  // 1.5 * 2^52
+  return (x + kShift) - kShift;
+}
+
+template <int N, bool H> [[gnu::always_inline]] inline Sines<N> sines(const LanesOf<N, H>& x) noexcept {
+  const Lanes<N> k = nearest(0.63661977236758134 * x);
+  const Lanes<N> r = ((x - k * 1.570796325802803) - k * 9.920935791635221e-10) - k * 5.170182981794105e-19;
+  const Lanes<N> z = r * r, z2 = z * z, z4 = z2 * z2;
+  const Lanes<N> s = r - r * z * ((1.0 / 6 - z * (1.0 / 120)) + z2 * (1.0 / 5040 - z * (1.0 / 362880)) +
+                                  z4 * ((1.0 / 39916800 - z * (1.0 / 6227020800)) + z2 * (1.0 / 1307674368000)));
+  const Lanes<N> c = (1.0 - 0.5 * z) + z2 * ((1.0 / 24 - z * (1.0 / 720)) + z2 * (1.0 / 40320 - z * (1.0 / 3628800)) +
+                                            z4 * ((1.0 / 479001600 - z * (1.0 / 87178291200)) + z2 * (1.0 / 20922789888000)));
+  const Lanes<N> quarter = k - 4.0 * nearest(0.25 * k);  // -2, -1, 0, 1 or 2
+  const auto odd = (abs(quarter) > 0.5) & (1.5 > abs(quarter));
+  const Lanes<N> a = select(odd, s, c), b = select(odd, c, s);
+  return {select((quarter > 0.5) | (-1.5 > quarter), -a, a), select((-0.5 > quarter) | (quarter > 1.5), -b, b)};
+}
+
 template <int N, bool H>
-[[gnu::always_inline]] inline Placed<N> clamp(int j, const LanesOf<N, H>& q, const Range& range) noexcept {
-  const Lanes<N> inside = max(min(q, range.upper[j]), range.lower[j]);
-  return {inside, abs(q - inside)};
+[[gnu::always_inline]] inline void turn_to(const LanesOf<N, H>& angle, LanesOf<N, H>& cosine, LanesOf<N, H>& sine) noexcept {
+  const Sines<N> of = sines(angle);
+  cosine = of.cosine;
+  sine = of.sine;
 }
 
-template <class Policy, int N, bool H>
-[[gnu::always_inline]] inline Placed<N> place(int j, const LanesOf<N, H>& q, const Range& range, double turn) noexcept {
-  const auto up = select(range.lower[j] - Policy::kLimitReach > q, turn, 0.0);
-  const auto down = select(q > range.upper[j] + Policy::kLimitReach, turn, 0.0);
-  return clamp(j, q + (up - down), range);
-}
-
-template <class Policy, int N, bool H> [[gnu::always_inline]] inline Mask<N> is_inside(const LanesOf<N, H>& off) noexcept {
-  return !(off > Policy::kLimitTolerance);
-}
-template <class Policy, int N, bool H> [[gnu::always_inline]] inline Mask<N> hardly_outside(const LanesOf<N, H>& off) noexcept {
-  return (off > Policy::kLimitTolerance) & (Policy::kLimitReach > off);
+template <int N, bool H> [[gnu::always_inline]] inline Sines<N> turned(const Sines<N>& by, const LanesOf<N, H>& x) noexcept {
+  const Lanes<N> z = x * x;
+  const Lanes<N> s = x - x * z * ((1.0 / 6 - z * (1.0 / 120)) + z * z * (1.0 / 5040 - z * (1.0 / 362880)));
+  const Lanes<N> c = z * ((0.5 - z * (1.0 / 24)) + z * z * (1.0 / 720 - z * (1.0 / 40320)));  // 1 less it
+  return {by.cosine - (by.cosine * c + by.sine * s), by.sine - (by.sine * c - by.cosine * s)};
 }
 
 // --- small matrix --------------------------------------------------------------------------------
@@ -506,95 +525,6 @@ template <class Factor, class X, int N> inline void substitute(const Factor (&A)
   for (int i = 0; i < N; ++i) x[i] = x[i] * A[i][i];
   for (int i = N - 2; i >= 0; --i)
     for (int k = N - 1; k > i; --k) x[i] = x[i] - A[k][i] * x[k];
-}
-
-// --- damped step ---------------------------------------------------------------------------------
-template <class Policy, class X, int Rows, int Columns>
-inline void damped_step(const X (&V)[Rows][Columns], const X (&e)[Rows], const X& worst, X (&x)[Columns]) noexcept {
-  using std::max;
-  using std::min;
-  const X bounded = min(worst, 1.0);
-  X A[Columns][Columns];
-  for (int i = 0; i < Columns; ++i) {
-    for (int j = 0; j <= i; ++j) {
-      A[i][j] = V[0][i] * V[0][j];
-      for (int r = 1; r < Rows; ++r) A[i][j] = A[i][j] + V[r][i] * V[r][j];
-    }
-    A[i][i] = A[i][i] + max(Policy::kDamping * (bounded * bounded), Policy::kLeastDamping);
-    x[i] = V[0][i] * e[0];
-    for (int r = 1; r < Rows; ++r) x[i] = x[i] + V[r][i] * e[r];
-  }
-  factor(A);
-  substitute(A, x);
-  for (X& one : x) one = min(max(one, -Policy::kLargestStep), Policy::kLargestStep);
-}
-
-// --- held aim ------------------------------------------------------------------------------------
-template <class Arm, bool kAngle = Arm::kArmAngle> struct HeldAim {
-  static constexpr int kCount = 0;  // errors beside the pose's
-  Eigen::Isometry3d pose;
-
-  HeldAim(const Eigen::Isometry3d& T, const std::array<double, Arm::kFree>&) noexcept : pose(T) {}
-  explicit HeldAim(const Eigen::Isometry3d& T) noexcept : pose(T) {}
-
-  static HeldAim own(const double*) noexcept { return HeldAim(Eigen::Isometry3d::Identity()); }
-
-  static void values(const double* q, std::array<double, Arm::kFree>& held) noexcept {
-    for (std::size_t k = 0; k < Arm::kFreeJoints.size(); ++k) held.data()[k] = q[Arm::kFreeJoints.data()[k]];
-  }
-};
-
-// --- rigid frame ---------------------------------------------------------------------------------
-template <class X> struct FrameOf {
-  X R[3][3], p[3];
-};
-using Frame = FrameOf<double>;
-
-template <class X> inline FrameOf<X> inverse(const FrameOf<X>& a) noexcept {
-  FrameOf<X> out;
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) out.R[i][j] = a.R[j][i];
-    out.p[i] = -(a.R[0][i] * a.p[0] + a.R[1][i] * a.p[1] + a.R[2][i] * a.p[2]);
-  }
-  return out;
-}
-
-// --- lane sines ----------------------------------------------------------------------------------
-template <int N> struct Sines {
-  Lanes<N> cosine, sine;
-};
-
-template <int N, bool H> [[gnu::always_inline]] inline Lanes<N> nearest(const LanesOf<N, H>& x) noexcept {
-  constexpr double kShift = 6755399441055744.0;  // 1.5 * 2^52
-  return (x + kShift) - kShift;
-}
-
-template <int N, bool H> [[gnu::always_inline]] inline Sines<N> sines(const LanesOf<N, H>& x) noexcept {
-  const Lanes<N> k = nearest(0.63661977236758134 * x);
-  const Lanes<N> r = ((x - k * 1.570796325802803) - k * 9.920935791635221e-10) - k * 5.170182981794105e-19;
-  const Lanes<N> z = r * r, z2 = z * z, z4 = z2 * z2;
-  const Lanes<N> s = r - r * z * ((1.0 / 6 - z * (1.0 / 120)) + z2 * (1.0 / 5040 - z * (1.0 / 362880)) +
-                                  z4 * ((1.0 / 39916800 - z * (1.0 / 6227020800)) + z2 * (1.0 / 1307674368000)));
-  const Lanes<N> c = (1.0 - 0.5 * z) + z2 * ((1.0 / 24 - z * (1.0 / 720)) + z2 * (1.0 / 40320 - z * (1.0 / 3628800)) +
-                                            z4 * ((1.0 / 479001600 - z * (1.0 / 87178291200)) + z2 * (1.0 / 20922789888000)));
-  const Lanes<N> quarter = k - 4.0 * nearest(0.25 * k);  // -2, -1, 0, 1 or 2
-  const auto odd = (abs(quarter) > 0.5) & (1.5 > abs(quarter));
-  const Lanes<N> a = select(odd, s, c), b = select(odd, c, s);
-  return {select((quarter > 0.5) | (-1.5 > quarter), -a, a), select((-0.5 > quarter) | (quarter > 1.5), -b, b)};
-}
-
-template <int N, bool H>
-[[gnu::always_inline]] inline void turn_to(const LanesOf<N, H>& angle, LanesOf<N, H>& cosine, LanesOf<N, H>& sine) noexcept {
-  const Sines<N> of = sines(angle);
-  cosine = of.cosine;
-  sine = of.sine;
-}
-
-template <int N, bool H> [[gnu::always_inline]] inline Sines<N> turned(const Sines<N>& by, const LanesOf<N, H>& x) noexcept {
-  const Lanes<N> z = x * x;
-  const Lanes<N> s = x - x * z * ((1.0 / 6 - z * (1.0 / 120)) + z * z * (1.0 / 5040 - z * (1.0 / 362880)));
-  const Lanes<N> c = z * ((0.5 - z * (1.0 / 24)) + z * z * (1.0 / 720 - z * (1.0 / 40320)));  // 1 less it
-  return {by.cosine - (by.cosine * c + by.sine * s), by.sine - (by.sine * c - by.cosine * s)};
 }
 
 // --- motion chain --------------------------------------------------------------------------------
@@ -757,6 +687,76 @@ template <class Arm> struct PoseError {
     return worst;
   }
 };
+
+// --- joint range ---------------------------------------------------------------------------------
+inline double shortest(double gap, double turn = kTurn) noexcept {
+  return gap > 0.5 * turn ? gap - turn : gap < -0.5 * turn ? gap + turn : gap;
+}
+template <int N, bool H>
+[[gnu::always_inline]] inline Lanes<N> shortest(const LanesOf<N, H>& gap, double turn = kTurn) noexcept {
+  return gap + select(gap > 0.5 * turn, -turn, select(-0.5 * turn > gap, turn, 0.0));
+}
+
+struct Range {
+  const double* lower;
+  const double* upper;
+};
+
+template <int N> struct Unbounded {
+  double lower[N], upper[N];
+  constexpr Unbounded() noexcept : lower(), upper() {
+    for (int i = 0; i < N; ++i) {
+      lower[i] = -kInfinity;
+      upper[i] = kInfinity;
+    }
+  }
+};
+template <int N> inline constexpr Unbounded<N> kUnbounded{};
+
+template <int N> struct Placed {
+  Lanes<N> q, off;
+};
+
+template <int N, bool H>
+[[gnu::always_inline]] inline Placed<N> clamp(int j, const LanesOf<N, H>& q, const Range& range) noexcept {
+  const Lanes<N> inside = max(min(q, range.upper[j]), range.lower[j]);
+  return {inside, abs(q - inside)};
+}
+
+template <class Policy, int N, bool H>
+[[gnu::always_inline]] inline Placed<N> place(int j, const LanesOf<N, H>& q, const Range& range, double turn) noexcept {
+  const auto up = select(range.lower[j] - Policy::kLimitReach > q, turn, 0.0);
+  const auto down = select(q > range.upper[j] + Policy::kLimitReach, turn, 0.0);
+  return clamp(j, q + (up - down), range);
+}
+
+template <class Policy, int N, bool H> [[gnu::always_inline]] inline Mask<N> is_inside(const LanesOf<N, H>& off) noexcept {
+  return !(off > Policy::kLimitTolerance);
+}
+template <class Policy, int N, bool H> [[gnu::always_inline]] inline Mask<N> hardly_outside(const LanesOf<N, H>& off) noexcept {
+  return (off > Policy::kLimitTolerance) & (Policy::kLimitReach > off);
+}
+
+// --- damped step ---------------------------------------------------------------------------------
+template <class Policy, class X, int Rows, int Columns>
+inline void damped_step(const X (&V)[Rows][Columns], const X (&e)[Rows], const X& worst, X (&x)[Columns]) noexcept {
+  using std::max;
+  using std::min;
+  const X bounded = min(worst, 1.0);
+  X A[Columns][Columns];
+  for (int i = 0; i < Columns; ++i) {
+    for (int j = 0; j <= i; ++j) {
+      A[i][j] = V[0][i] * V[0][j];
+      for (int r = 1; r < Rows; ++r) A[i][j] = A[i][j] + V[r][i] * V[r][j];
+    }
+    A[i][i] = A[i][i] + max(Policy::kDamping * (bounded * bounded), Policy::kLeastDamping);
+    x[i] = V[0][i] * e[0];
+    for (int r = 1; r < Rows; ++r) x[i] = x[i] + V[r][i] * e[r];
+  }
+  factor(A);
+  substitute(A, x);
+  for (X& one : x) one = min(max(one, -Policy::kLargestStep), Policy::kLargestStep);
+}
 
 // --- refinement course ---------------------------------------------------------------------------
 struct RefineStage {
@@ -2599,7 +2599,8 @@ template <class Arm> struct CarefulSolve {
     RowStart<Arm> end;
     end.marked = true;
     std::copy_n(start, Arm::kDof, end.q);
-    if (Refinement::refine(end.q, aim)) {
+    bool led = Refinement::refine(end.q, aim);
+    if (led) {
       RightRows<Arm>::add(aim, out, end.q, true);
       return true;
     }

@@ -70,7 +70,7 @@ inline Spectrum run_both_half_angles(const Chain& F, const Frame& T, const Turni
   }
   roots.count = static_cast<int>(sure.count);
   roots.perhaps = roots.count + halves;
-  roots.doubtful = halves > 0 || quarters >= 4;
+  roots.doubtful = halves > 0 || quarters >= 4 || !found.sharp;
   if (found.ranked) roots.real = roots.count;
   return roots;
 }

@@ -106,9 +106,9 @@ inline Mat<2 * N, 2 * N> quarter_turned(const Mat<N, 2 * N>& top, const Mat<N, 2
   return out;
 }
 
-// Of the eigenproblem's entries, or of the largest pivot of M_pi over its least: of a root's digits half are rounding, or
-// nearly all.
-inline constexpr double kNoRank = 1e9, kNoPivot = 1e11;
+// Of the eigenproblem's entries: rounding, grown by their square, hides whether a root is real, or half of its digits are
+// rounding; of the largest pivot of M_pi over its least: nearly all are.
+inline constexpr double kBlurred = 1e6, kNoRank = 1e9, kNoPivot = 1e11;
 
 // rad: imaginary part below which a root is real, or may be half of a double one, and one of four a quarter of a fourfold
 // one.
@@ -207,6 +207,7 @@ inline Spectrum find_roots(const Mat<6, 16>& E, const Mat<14, 12>& left, const R
   if (!eigenvalues(A, t)) return out;
   out.real = 0;
   add_angles(t, node.angle, accept, out);
+  if (!(largest < kBlurred)) out.doubtful = true;
   if (!(largest < kNoRank && node.has_rank())) out.real = -1;
   return out;
 }

@@ -65,6 +65,7 @@ inline double pivot_of(const TallQr& qr, Index k) noexcept { return k < qr.rank 
 
 struct TallRoots {
   bool ranked = false;  // M has full rank elsewhere
+  bool sharp = false;   // rounding leaves told which are real
   double node = 0.0;
   std::array<Complex, 32> t;  // tangents of half the angle about the node
 };
@@ -104,6 +105,8 @@ inline bool find_tall_roots(const Mat<6, 16>& E, const Mat<14, 12>& left, const 
   add_product<16>(2.0, lift_both(x), 0, 0, solved, 0, top);
   add_product<16>(2.0, lift_both(y), 0, 0, solved, 0, bottom);
   Mat<32, 32> A = quarter_turned(top, bottom);
+  out.sharp = true;
+  for (const double entry : A.v) out.sharp = out.sharp && std::abs(entry) < kBlurred;
   return eigenvalues(A, out.t);
 }
 

@@ -1,6 +1,7 @@
 // Poses one by one with care, by whatever starts it takes.
 #pragma once
 
+#include "newton/flat_steps.hpp"
 #include "solving/careful_rows.hpp"
 #include "singular/limit_curve.hpp"
 #include "singular/limit_rows.hpp"
@@ -97,7 +98,9 @@ template <class Arm> struct CarefulSolve {
     RowStart<Arm> end;
     end.marked = true;
     std::copy_n(start, Arm::kDof, end.q);
-    if (Refinement::refine(end.q, aim)) {
+    bool led = Refinement::refine(end.q, aim);
+    if constexpr (Arm::kRefined) led = led || FlatSteps<Arm>::refine_from(start, end.q, aim);
+    if (led) {
       RightRows<Arm>::add(aim, out, end.q, true);
       return true;
     }

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from ikgen.runtime.python.arrays.array_types import Array, Flags, Index
 from ikgen.runtime.python.elimination.hidden_angle import (
+    BLURRED,
     NO_PIVOT,
     NODES,
     REAL,
@@ -51,7 +52,7 @@ def both_angles(E: Array, left: Array, _: int) -> tuple[Index, Array, Index, Fla
 
     Each real root has to lead to a solution of the equations, as no other counts."""
     M = _resultant(E, left)
-    angle, off, ranked = _roots(E, left, M)
+    angle, off, ranked, sharp = _roots(E, left, M)
     pose, root = np.nonzero(off < _ACCEPT)
     order = np.lexsort((angle[pose, root], pose))
     pose, root = pose[order], root[order]
@@ -73,7 +74,7 @@ def both_angles(E: Array, left: Array, _: int) -> tuple[Index, Array, Index, Fla
     real = off[pose, root] < REAL
     least = np.bincount(pose[k[solved[real[k[solved]]]]], minlength=len(off))
     lost = np.bincount(pose[real & (led == 0)], minlength=len(off)) > 0
-    return pose[k], t, np.where(ranked, least, -1), all_clear(angle, off) & ~lost
+    return pose[k], t, np.where(ranked, least, -1), all_clear(angle, off) & sharp & ~lost
 
 
 def _first(t: Array, pose: Index) -> Flags:
@@ -106,9 +107,9 @@ def _size(M: Resultant) -> Array:
     return np.asarray(one + cosine + sine)
 
 
-def _roots(E: Array, left: Array, M: Resultant) -> tuple[Array, Array, Flags]:
-    """Angles theta_3 (N, 32) at which `P M` is singular and how large their imaginary parts are, and
-    whether M has full rank elsewhere (N,).
+def _roots(E: Array, left: Array, M: Resultant) -> tuple[Array, Array, Flags, Flags]:
+    """Angles theta_3 (N, 32) at which `P M` is singular and how large their imaginary parts are, whether
+    M has full rank elsewhere (N,), and whether rounding leaves told which of them are real (N,).
 
     P is M's pseudo-inverse where M is far from singular, at the angle opposite a node. What `P M` has of
     roots that M does not have lies anywhere. With `M = M0 + N Rot(theta) W` the eigenvalues of `-J (1 + 2 W
@@ -132,7 +133,8 @@ def _roots(E: Array, left: Array, M: Resultant) -> tuple[Array, Array, Flags]:
     P = np.swapaxes(right_of, 1, 2) @ (over[..., None] * np.swapaxes(left_of, 1, 2))
     K = np.eye(32) + 2.0 * W @ (P @ N)
     t = np.linalg.eigvals(np.concatenate([K[:, 16:], -K[:, :16]], axis=1))
-    return *angles_off(t, NODES[k]), np.asarray(kept.all(axis=1))
+    sharp = np.abs(K).max(axis=(1, 2)) < BLURRED
+    return *angles_off(t, NODES[k]), np.asarray(kept.all(axis=1)), np.asarray(sharp)
 
 
 def _pairs(rows: Array, sigma: Array, pose: Index, t3: Array) -> tuple[Index, Array, Flags]:

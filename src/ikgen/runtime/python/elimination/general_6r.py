@@ -168,10 +168,9 @@ def six_joint_rows(
     displaced to both sides (where right angles make roots coincide they come apart, and Newton's method
     takes them back), by the next elimination and with the pose displaced by less, until they find all that
     is known and no more, an even number, none stalls near another, and one of the pose itself has kept its
-    rank; where solutions meet the next elimination has to find as many that lie apart. What a direct way
-    leaves open, these runs confirm or complete. Returns pose indices (k,) in order, joint values (k, 6),
-    angles in (-pi, pi], sorted, and which poses (N,) may have more, or some though none was found, as on a
-    continuum.
+    rank; where solutions meet the next elimination has to find as many that lie apart. Returns pose indices
+    (k,) in order, joint values (k, 6), angles in (-pi, pi], sorted, and which poses (N,) may have more, or
+    some though none was found: on a continuum, or beside a pose that has roots.
     """
     T = T.copy()
     T[:, :3, 3] /= plan.length
@@ -183,16 +182,17 @@ def six_joint_rows(
             break
         (pose, q, before), real, clear, stalled = _run(six, plan, way, moves, T, todo, policy)
         if moves[0] is None and number >= len(plan.direct):
-            least[todo] = np.maximum(least[todo], real)
-            unsure[todo] |= (real < 0) | ~clear
+            least[todo] = np.maximum(least[todo], real[0])
+            unsure[todo] |= (real[0] < 0) | ~clear
+        unsure[todo] |= (real[int(moves[0] is None) :] > 0).any(axis=0)
         best = np.lexsort((before >= way[2], pose))
         q, pose, kept = distinct_rows(q[best], pose[best], plan.turning, policy.coincident)
         mine = np.bincount(pose, minlength=size)[todo]
         if number == 0:
             direct = np.bincount(pose[before[best[kept]] < way[2]], minlength=size)[todo]
-            settled = clear & (direct == real) & (mine == real) & (real > 0) & (mine % 2 == 0)
+            settled = clear & (direct == real[0]) & (mine == direct) & (mine > 0) & (mine % 2 == 0)
             found, of, count = q, pose, mine
-            hollow[todo] = (real > 0) & (mine == 0)  # roots that led to nothing
+            hollow[todo] = (real[0] > 0) & (mine == 0)  # roots that led to nothing
         else:
             known, old = np.bincount(of, minlength=size)[todo], (found, of)
             both = np.concatenate([found, q]), np.concatenate([of, pose])
@@ -240,7 +240,7 @@ def _run(
     stalled = np.bincount(which[short], minlength=len(todo)) > 0
     arrived = error < policy.arrived
     rows = todo[which[arrived]], q[arrived], before[arrived]
-    return rows, real[: len(todo)], clear[: len(todo)], stalled
+    return rows, real.reshape(len(moves), -1), clear[: len(todo)], stalled
 
 
 def _same_apart(

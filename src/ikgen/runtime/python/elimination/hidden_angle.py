@@ -14,6 +14,7 @@ from ikgen.runtime.python.arrays.array_types import Array, Flags, Index
 from ikgen.runtime.python.elimination.loop_equations import XS, YS, ZS
 
 __all__ = [
+    "BLURRED",
     "DOUBTFUL",
     "NODES",
     "NO_PIVOT",
@@ -36,6 +37,8 @@ DOUBTFUL = 1e-3  # rad: imaginary part below which a root may be half of a doubl
 _FOURFOLD = 0.03  # rad: imaginary part below which a root may be a quarter of a fourfold one
 _CROWD = 8.0  # how far off the other pair of a fourfold root is at most, over the imaginary part
 _NO_RANK = 1e9  # entry of the eigenproblem above which half of a root's digits are rounding
+BLURRED = 1e6
+"""Entry of the eigenproblem above which rounding, grown by its square, hides whether a root is real."""
 NO_PIVOT = 1e11  # condition of M at the node above which nearly all are
 _LIFT = np.kron(  # of 1, c and s by half angles, times cos h and times sin h
     np.array(
@@ -98,8 +101,9 @@ def hidden_angles(
     t = np.linalg.eigvals(np.concatenate([K[:, 8:], -K[:, :8]], axis=1))
     pose, angle, real, clear = real_angles(t, NODES[k], accept)
     condition = np.abs(pivot).max(axis=(1, 2)) * np.abs(found[:, :, 16:]).max(axis=(1, 2))
-    real[(np.abs(K).max(axis=(1, 2)) > _NO_RANK) | (condition > NO_PIVOT)] = -1
-    return pose, angle, real, clear
+    largest = np.abs(K).max(axis=(1, 2))
+    real[(largest > _NO_RANK) | (condition > NO_PIVOT)] = -1
+    return pose, angle, real, clear & (largest < BLURRED)
 
 
 def real_angles(
