@@ -116,10 +116,18 @@ def test_bad_module_files(tmp_path: Path) -> None:
 
 
 def test_languages_that_agree(tmp_path: Path) -> None:
-    runner, oracle = six_axis_module(tmp_path), six_axis_oracle()
-    report = verify(runner, oracle, samples=60, peer=runner)
+    runner, other = six_axis_module(tmp_path), six_axis_module(tmp_path)
+    report = verify(runner, six_axis_oracle(), samples=60, peer=other)
     assert report.passed and report.checks[-1].name == "agreement with python"
     assert report.checks[-1].count > 50
+
+
+def test_what_a_language_answered_when_it_was_verified_is_not_asked_again(tmp_path: Path) -> None:
+    first, second = six_axis_module(tmp_path), six_axis_module(tmp_path)
+    shared, oracle = SharedWork(), six_axis_oracle()
+    verify(first, oracle, samples=60, shared=shared)
+    first.solve_many = first.solve_batch = None  # type: ignore[assignment]
+    assert verify(second, oracle, samples=60, peer=first, shared=shared).passed
 
 
 @pytest.mark.parametrize("defect", ["missing branch", "duplicate row", "swapped joints"])

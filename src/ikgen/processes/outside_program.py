@@ -10,6 +10,7 @@ import contextlib
 import ctypes
 import os
 import select
+import shutil
 import signal
 import subprocess
 import sys
@@ -18,6 +19,7 @@ import time
 import weakref
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import IO
 
@@ -136,16 +138,18 @@ def run_program(
 def _started(
     command: Sequence[str], cwd: Path | None, environment: Mapping[str, str] | None
 ) -> subprocess.Popen[bytes]:
+    guarded = [*_dying_command(), *command]
+    bound = len(guarded) > len(command) and shutil.which(command[0]) is not None
     try:
         return subprocess.Popen(
-            command,
+            guarded if bound else command,
             cwd=cwd,
             env=None if environment is None else {**environment},
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.PIPE,
             start_new_session=True,
-            preexec_fn=_dying_with_parent(),
+            preexec_fn=None if bound else _dying_with_parent(),
         )
     except (OSError, ValueError, subprocess.SubprocessError) as error:
         reason = error.strerror if isinstance(error, OSError) else str(error)
@@ -196,6 +200,20 @@ def _end_group(number: int) -> None:
             os.killpg(number, signal.SIGKILL)
         else:
             os.kill(number, signal.SIGTERM)  # Windows: at once
+
+
+@cache
+def _dying_command() -> tuple[str, ...]:
+    """What, before a command, makes it end with this process, where there is such a program (Linux): with
+    it a process starts in a tenth of the time, as nothing of this one is copied for it."""
+    tool = shutil.which("setpriv") if sys.platform.startswith("linux") else None
+    if tool is None:
+        return ()
+    command, nothing = (tool, "--pdeathsig", "KILL"), subprocess.DEVNULL
+    tried = subprocess.run(
+        [*command, "true"], stdin=nothing, stdout=nothing, stderr=nothing, check=False
+    )
+    return () if tried.returncode else command
 
 
 def _dying_with_parent() -> Callable[[], object] | None:

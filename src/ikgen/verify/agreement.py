@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ikgen.verify.arm import ArmUnderTest
-from ikgen.verify.runners.runner import Rows, Runner
-from ikgen.verify.trials import Trial, result, run_trial, spell
+from ikgen.verify.runners.runner import Rows
+from ikgen.verify.trials import Trial, result, spell
 from ikgen.verify.verification_report import CheckResult
 
 __all__ = ["FARTHEST_SLIDE", "TOLERANCE", "check_agreement", "disagreements"]
@@ -53,14 +53,13 @@ def disagreements(
     return np.asarray(wrong), compared, float(np.max(largest[compared & ~wrong], initial=0.0))
 
 
-def check_agreement(arm: ArmUnderTest, trial: Trial, peer: Runner) -> CheckResult:
-    """`peer`, the same solver in another language, gives the same rows."""
-    other = run_trial(peer, arm, trial.sample, limits=trial.limits, seeded=trial.seeded)
+def check_agreement(arm: ArmUnderTest, trial: Trial, label: str, other: Trial) -> CheckResult:
+    """The same solver in the language `label` gives the same rows: `other`, of the same poses."""
     wrong, compared, largest = disagreements(arm, trial.rows, other.rows)
     case = ""
     if wrong.any():
         k = int(np.argmax(wrong))
         here, there = (r.q[k, : r.count[k]] for r in (trial.rows, other.rows))
         case = spell(trial.sample.label, k, pose=trial.sample.poses[k], here=here, there=there)
-    name, worst = f"agreement with {peer.label}", (("rad or m", largest),)
+    name, worst = f"agreement with {label}", (("rad or m", largest),)
     return result(name, int(compared.sum()), int(wrong.sum()), worst, worst_case=case)

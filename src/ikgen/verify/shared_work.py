@@ -11,13 +11,13 @@ _T = TypeVar("_T")
 
 
 class SharedWork:
-    """Things by name, of one arm with one task, number of samples and seed; nothing of the code under test
-    is among them."""
+    """Things by name, of one arm with one task, number of samples and seed. Of the code under test there
+    are answers alone, under its runner, for another to be compared with."""
 
     def __init__(self) -> None:
-        self._known: dict[str, Any] = {}
+        self._known: dict[object, Any] = {}
 
-    def once(self, name: str, compute: Callable[[], _T]) -> _T:
+    def once(self, name: object, compute: Callable[[], _T]) -> _T:
         """What `compute` gave when it was called for that name first."""
         if name not in self._known:
             self._known[name] = compute()

@@ -19,9 +19,10 @@ from ikgen.verify.arm import ArmUnderTest, arm_under_test
 from ikgen.verify.motion_checks import motion_checks, regular_motions
 from ikgen.verify.oracle import Oracle
 from ikgen.verify.runners.runner import MovingRunner, Rows, Runner
-from ikgen.verify.sampling import generator
+from ikgen.verify.sampling import SampleSet, generator
 from ikgen.verify.shared_work import SharedWork
 from ikgen.verify.task_space import TaskSpace, task_space
+from ikgen.verify.trials import Trial, run_trial
 from ikgen.verify.verification_report import CheckResult, SigmaBand, VerificationReport
 
 __all__ = ["Progress", "verify"]
@@ -49,7 +50,9 @@ def _plan(
     rng = generator(seed, "search")
     agreement: dict[str, Callable[[], CheckResult]] = {}
     if peer is not None:
-        agreement[f"agreement with {peer.label}"] = lambda: check_agreement(arm, a.unlimited, peer)
+        agreement[f"agreement with {peer.label}"] = lambda: check_agreement(
+            arm, a.unlimited, peer.label, _unlimited(peer, arm, random, shared)
+        )
     return {
         "constants": lambda: interface_checks.check_constants(arm, runner, a.unlimited.rows),
         "forward": lambda: interface_checks.check_forward(runner, random),
@@ -76,6 +79,11 @@ def _plan(
         **_motion_checks(runner, arm, seed),
         **agreement,
     }
+
+
+def _unlimited(peer: Runner, arm: ArmUnderTest, random: SampleSet, shared: SharedWork) -> Trial:
+    """What another language has for the random poses without limits: known where it was verified before."""
+    return shared.once(peer, lambda: run_trial(peer, arm, random, limits=False))
 
 
 def _motion_checks(
@@ -136,6 +144,7 @@ def _run_checks(
         answers = collect_answers(runner, arm, samples, seed, shared)
         survey = completeness.survey(arm, runner, answers.standing)
         single = _by_default(runner, arm, answers)
+        shared.once(runner, lambda: answers.unlimited)
     except Exception as error:
         what = f"solve raises {type(error).__name__}: {error}"
         return _Findings((CheckResult("runs", False, 1, 1, detail=what),))
