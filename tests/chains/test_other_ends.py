@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -72,6 +73,9 @@ def test_a_generation_names_the_fingers_that_it_left_out(
         assert run([*command, *options]) == 0
         (line,) = (x for x in capsys.readouterr().out.splitlines() if x.startswith("robot:"))
         assert line.endswith(told) is shown
+        assert run([*command, *options, "--force", "--json"]) == 0
+        ends = json.loads(capsys.readouterr().out)["other_ends"]
+        assert ends == (["index_1_link", "ring_1_link"] if shown else [])
     path.write_text(hand({**PALM, "middle": 4}))
     assert run(command) == 2
     said = capsys.readouterr().err

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ikgen.cli.tables import table
-from ikgen.generation.result import rounding
+from ikgen.generation.result import branches_beside, rounding
 from ikgen.model.counted import counted, listed
 
 if TYPE_CHECKING:
@@ -43,15 +43,9 @@ def summary(generation: Generation) -> str:
 
 def _robot(derivation: Derivation) -> str:
     """The chain, and the branches beside it where it was taken for the robot's only arm."""
-    from ikgen.chains.arms import candidate_chains
-    from ikgen.chains.other_ends import other_ends
-
-    dh, tree = derivation.reading.dh, derivation.reading.tree
+    dh = derivation.reading.dh
     words = f"{dh.robot}, {dh.base_link} -> {dh.tip_link}, {counted(dh.dof, 'joint')}"
-    arms = candidate_chains(tree) if tree is not None else ()
-    if tree is None or [arm.tip for arm in arms] != [dh.tip_link]:
-        return words
-    others = other_ends(tree, arms)
+    others = branches_beside(derivation)
     return f"{words}; other branches end at {listed(others, 5)} (--tip)" if others else words
 
 

@@ -10,13 +10,25 @@ if TYPE_CHECKING:
     from ikgen.generation.generate import Generation
     from ikgen.verify.verification_report import VerificationReport
 
-__all__ = ["as_dict", "rounding"]
+__all__ = ["as_dict", "branches_beside", "rounding"]
 
 
 def rounding(derivation: Derivation) -> tuple[float, float] | None:
     """How far (m, rad) the file is off what was solved, where Newton steps take the rows to it; else
     None."""
     return None if derivation.module.refine == "some" else derivation.reading.dh.deviation
+
+
+def branches_beside(derivation: Derivation) -> tuple[str, ...]:
+    """The last links of the branches beside the chain, where it was taken for the robot's only arm."""
+    from ikgen.chains.arms import candidate_chains
+    from ikgen.chains.other_ends import other_ends
+
+    dh, tree = derivation.reading.dh, derivation.reading.tree
+    arms = candidate_chains(tree) if tree is not None else ()
+    if tree is None or [arm.tip for arm in arms] != [dh.tip_link]:
+        return ()
+    return other_ends(tree, arms)
 
 
 def as_dict(generation: Generation) -> dict[str, Any]:
@@ -41,6 +53,7 @@ def as_dict(generation: Generation) -> dict[str, Any]:
             {"unknown": s.candidate.unknown.text, "leaf": s.candidate.leaf, "branches": s.branches}
             for s in derivation.graph.steps
         ],
+        "other_ends": list(branches_beside(derivation)),
         "max_solutions": module.max_solutions,
         "deviation": {"m": dh.deviation[0], "rad": dh.deviation[1]},
         "calibration": _calibration(derivation),
