@@ -16,6 +16,7 @@ from tests.support.redundant_arms import (
     serial_urdf,
 )
 
+import ikgen
 from ikgen.cli.main import run
 from ikgen.derivation.announcements import announcements
 from ikgen.derivation.derive import derive
@@ -120,6 +121,7 @@ def test_six_joints_of_which_one_is_pinned_are_told(
         "; shoulder_pitch hardly moves: answers only poses with its value (--lock shoulder_pitch=0.5)"
     )
     assert said[1] in inspect_robot(request).warnings
+    assert list(ikgen.load(request.robot, verify=False, cache=False).warnings) == said
 
 
 def test_the_way_out_that_is_named_does_and_silences_the_warning(tmp_path: Path) -> None:

@@ -122,7 +122,8 @@ class Arm:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What was odd in the robot's file."""
+        """What was odd in the robot's file, and what has to be known of the solver: that its task asks more
+        than the arm can do, say, or that a joint hardly moves."""
         return self._entry.warnings
 
     def forward(self, q: ArrayLike) -> Array:

@@ -33,7 +33,8 @@ __all__ = ["SolverCache", "SolverEntry", "cache_folder"]
 class SolverEntry:
     """One solver: the arm's `name`, the `text` of its Python module and its digest, what its verification
     found (none: it was not verified), and what a derivation has to be told to come out the same: tasks
-    that were `passed_over`, choices of held joints that were `refused`. `warnings` are the file's."""
+    that were `passed_over`, choices of held joints that were `refused`. `warnings` are what
+    `from-urdf` warns of."""
 
     name: str
     text: str
@@ -47,6 +48,7 @@ class SolverEntry:
     @classmethod
     def of(cls, made: Made) -> SolverEntry:
         """The solver that was just made."""
+        from ikgen.derivation.announcements import announcements
         from ikgen.library.arm_card import card
 
         derivation = made.derivation
@@ -58,7 +60,7 @@ class SolverEntry:
             made.reports.get("python"),
             made.passed_over,
             () if derivation.held is None else derivation.held.refused,
-            derivation.reading.source.warnings,
+            announcements(derivation),
             card(derivation, made.reports.get("python")),
         )
 
