@@ -9,7 +9,7 @@ import subprocess
 from pathlib import Path
 
 from ikgen.errors import MissingToolError
-from ikgen.verify.runners.cpp_toolchain import find_compiler, find_eigen
+from ikgen.verify.runners.cpp_toolchain import LEAN, find_compiler, find_eigen
 
 __all__ = ["OPTIONS", "compilers"]
 
@@ -23,7 +23,7 @@ FOLDER = Path(__file__).parents[2] / "build" / "precompiled"
 HEADERS = "#include <Eigen/Core>\n#include <Eigen/Geometry>\n"
 SCRIPT = """#!/bin/sh
 # {compiler}, with Eigen precompiled for options of ikgen's own compilations. Where others differ from those
-# it was precompiled for, g++ reads the headers themselves.
+# it was precompiled for, g++ reads the headers themselves; options of optimisation it takes from there.
 case " $* " in
   *" -fsyntax-only "*) exec {compiler} {garbage} "$@" ;;
   *" -std=c++17"*" -O1 "*) ;;
@@ -35,7 +35,7 @@ case " $* " in *" -march=native "*) machine=-march=native ;; esac
 made={header}.gch/light$strict$machine
 if [ ! -f "$made" ]; then
   mkdir -p {header}.gch  # each process writes a file of its own
-  {compiler} -std=c++17 -O1 $strict $machine -pthread -isystem {eigen} \\
+  {compiler} -std=c++17 -O1 {lean} $strict $machine -pthread -isystem {eigen} \\
     -x c++-header {header} -o {folder}/$$.gch && mv {folder}/$$.gch "$made"
 fi
 exec {compiler} {garbage} -pthread -include {header} "$@"
@@ -53,7 +53,7 @@ def compilers() -> Path | None:
     own = FOLDER in Path(compiler[0]).parents
     if own or "CXX" in os.environ or "Free Software Foundation" not in version:
         return None
-    key = "\n".join([version, *compiler, str(eigen), HEADERS, SCRIPT, GARBAGE])
+    key = "\n".join([version, *compiler, str(eigen), HEADERS, SCRIPT, GARBAGE, *LEAN])
     folder = FOLDER / hashlib.sha256(key.encode()).hexdigest()[:16]
     header, script = folder / "eigen.hpp", folder / "bin" / "c++"
     if not script.is_file():
@@ -61,7 +61,7 @@ def compilers() -> Path | None:
         header.write_text(HEADERS)
         places = {"folder": folder, "header": header, "eigen": eigen, "compiler": compiler[0]}
         quoted = {name: shlex.quote(str(path)) for name, path in places.items()}
-        text = SCRIPT.format(garbage=GARBAGE, **quoted)
+        text = SCRIPT.format(garbage=GARBAGE, lean=" ".join(LEAN), **quoted)
         for name in ("g++", "c++"):
             mine = folder / f"{os.getpid()}.{name}"
             mine.write_text(text)

@@ -264,7 +264,7 @@ def test_header_that_cannot_be_used(planar: CppHeader, tmp_path: Path) -> None:
 def compiler(folder: Path, script: str) -> str:
     """A compiler of one's own: its command."""
     path = folder / "compiler"
-    path.write_text(f"#!/bin/sh\n{script}\n")
+    path.write_text(f'#!/bin/sh\n[ "$1" = -v ] && exit\n{script}\n')
     path.chmod(0o755)
     return str(path)
 

@@ -128,3 +128,29 @@ def test_eigen_where_a_variable_says(
     assert find_eigen() == headers
     monkeypatch.setenv(variable, str(tmp_path / "prefix/a/b/c/d"))
     assert find_eigen() != headers
+
+
+@pytest.mark.parametrize(
+    ("version", "options", "lean"),
+    [
+        ("gcc version 12.2.0 (Debian 12.2.0-14)", ("-O1",), True),
+        ("gcc version 12.2.0 (Debian 12.2.0-14)", ("-O3",), False),
+        ("clang version 17.0.6", ("-O1",), False),
+    ],
+)
+def test_only_gcc_gets_options_of_its_own(
+    version: str,
+    options: tuple[str, ...],
+    lean: bool,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    compiler, got = tmp_path / "compiler", tmp_path / "got"
+    compiler.write_text(
+        f'#!/bin/sh\nif [ "$1" = -v ]; then echo "{version}" >&2; exit; fi\n'
+        f'echo "$@" > {got}; touch {tmp_path / "x"}\n'
+    )
+    compiler.chmod(0o755)
+    monkeypatch.setenv("CXX", str(compiler))
+    compile_program(tmp_path / "x.cpp", tmp_path / "x", [], options)
+    assert (" ".join(cpp_toolchain.LEAN) in got.read_text()) is lean
