@@ -81,6 +81,15 @@ def test_others_follow_until_they_find_all_that_is_known(monkeypatch: pytest.Mon
     assert run(monkeypatch, [([0], 1, True), two, two])[1] == 3  # rows come in pairs
 
 
+def test_more_roots_of_displaced_poses_ask_for_the_next_elimination(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    told = [([0, 1], 2, False), ([0, 1], 4, False)] + [([0, 1, 2, 3], 4, False)] * 2
+    q, calls = run(monkeypatch, told)
+    assert calls == 4
+    np.testing.assert_allclose(q, ROWS, atol=1e-12)
+
+
 def test_where_solutions_meet_the_next_elimination_settles_how_many_there_are(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -144,6 +144,7 @@ def _displaced(by: float) -> tuple[Array, Array]:
     return X, inverses(X)
 
 
+# At displaced poses roots come apart that right angles make coincide; Newton's method takes them back.
 # Farther off what more than two solutions that meet become is not real, or far from them; closer by an
 # elimination that has no rank at the pose leaves no digits.
 _ASIDE, _CLOSE = _displaced(1e-3), (_displaced(1e-6), _displaced(1e-8))
@@ -161,30 +162,28 @@ def _runs(plan: Plan) -> list[tuple[Way, tuple[Array | None, ...]]]:
 def six_joint_rows(
     six: SixJoints, plan: Plan, T: Array, policy: Policy
 ) -> tuple[Index, Array, Flags]:
-    """All real solutions of the six joints for poses T (N, 4, 4).
+    """All real solutions of the six joints for poses T (N, 4, 4): pose indices (k,) in order, joint values
+    (k, 6), angles in (-pi, pi], sorted, and which poses (N,) may have more, or some though none was found.
 
     One run of the first is enough where each of its roots is clearly real, or clearly not, and there are
     as many solutions as real roots, each found to many digits. Otherwise more runs follow, with the pose
-    displaced to both sides (where right angles make roots coincide they come apart, and Newton's method
-    takes them back), by the next elimination and with the pose displaced by less, until they find all that
-    is known and no more, an even number, none stalls near another, and one of the pose itself has kept its
-    rank; where solutions meet the next elimination has to find as many that lie apart. Returns pose indices
-    (k,) in order, joint values (k, 6), angles in (-pi, pi], sorted, and which poses (N,) may have more, or
-    some though none was found: on a continuum, or beside a pose that has roots.
+    displaced to both sides, by the next elimination and with the pose displaced by less, until they find
+    all that is known and no more, an even number, none stalls near another, and one of the pose itself has
+    kept its rank; where solutions meet, or displaced poses have more roots, so has the next
+    elimination.
     """
     T = T.copy()
     T[:, :3, 3] /= plan.length
     found, of = np.zeros((0, 6)), np.zeros(0, dtype=np.intp)
     todo = np.flatnonzero(np.abs(T[:, :3]).max(axis=(1, 2), initial=0.0) < 1e6)  # false for NaN
-    least, size, (hollow, unsure) = np.full(len(T), -1), len(T), np.zeros((2, len(T)), dtype=bool)
+    hollow, unsure = np.zeros((2, size := len(T)), dtype=bool)
+    least = np.full(size, -1)
     for number, (way, moves) in enumerate(_runs(plan)):
         if not len(todo):
             break
         (pose, q, before), real, clear, stalled = _run(six, plan, way, moves, T, todo, policy)
-        if moves[0] is None and number >= len(plan.direct):
-            least[todo] = np.maximum(least[todo], real[0])
-            unsure[todo] |= (real[0] < 0) | ~clear
-        unsure[todo] |= (real[int(moves[0] is None) :] > 0).any(axis=0)
+        own, told = moves[0] is None, number >= len(plan.direct)
+        beside = _noted(real, clear, todo, own, told, (least, unsure))
         best = np.lexsort((before >= way[2], pose))
         q, pose, kept = distinct_rows(q[best], pose[best], plan.turning, policy.coincident)
         mine = np.bincount(pose, minlength=size)[todo]
@@ -198,16 +197,36 @@ def six_joint_rows(
             both = np.concatenate([found, q]), np.concatenate([of, pose])
             found, of, _ = distinct_rows(*both, plan.turning, policy.coincident)
             count = np.bincount(of, minlength=size)[todo]
-            told = (least[todo] >= 0) & ~stalled & (~hollow[todo] | (len(moves) > 1))
-            settled = told & (mine == known) & (known == count) & (count % 2 == 0)
-            told &= number > len(plan.direct) + 1  # one alone may miss the same of a crowd twice
-            left = np.flatnonzero(told & ~settled)
+            ranked = (least[todo] >= 0) & ~stalled & (~hollow[todo] | (len(moves) > 1))
+            settled = ranked & (mine == known) & (known == count) & (count % 2 == 0)
+            others = number > len(plan.direct) + 1  # one alone may miss the same of a crowd twice
+            settled &= others | (count >= beside)
+            left = np.flatnonzero(ranked & others & ~settled)
             settled[left] = _same_apart(six, plan, todo[left], ((found, of), old, (q, pose)))
         settled &= (count >= least[todo]) & ((count > 0) | ~unsure[todo])
         todo = todo[~settled]
-    unit = np.where(plan.turning, 1.0, plan.length)
     more = _may_have_more(np.bincount(of, minlength=size) > 0, unsure, todo, least)
-    return of, sorted_rows(found, of, plan.turning) * unit, more
+    return of, sorted_rows(found, of, plan.turning) * np.where(plan.turning, 1.0, plan.length), more
+
+
+def _noted(
+    real: Index,
+    clear: Flags,
+    todo: Index,
+    own: bool,
+    told: bool,
+    marks: tuple[Index, Flags],
+) -> Index:
+    """Enters what a run tells of the poses `todo` by its `real` roots (m, k), those of the pose itself
+    first if it is its `own`: of all poses (N,) how many solutions there are at least, and which may have
+    some, whatever is found. The most roots (k,) of a displaced pose."""
+    least, unsure = marks
+    if own and told:
+        least[todo] = np.maximum(least[todo], real[0])
+        unsure[todo] |= (real[0] < 0) | ~clear
+    beside: Index = real[int(own) :].max(axis=0, initial=0)
+    unsure[todo] |= beside > 0
+    return beside
 
 
 def _may_have_more(some: Flags, unsure: Flags, todo: Index, least: Index) -> Flags:

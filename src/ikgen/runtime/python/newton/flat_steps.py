@@ -14,7 +14,7 @@ from ikgen.runtime.python.newton.refinement import errors_and_slopes
 
 __all__ = ["flat_steps"]
 
-_FLAT_STEPS = 30
+_FLAT_STEPS = 60
 _FLAT_LONGEST = 0.3  # rad or arm lengths: a step along a singular direction
 _FLAT_ENOUGH = 1e-14  # error
 

@@ -1,0 +1,37 @@
+"""Regular solutions whose roots nearly meet those of others, in an angle that an elimination hides."""
+
+from __future__ import annotations
+
+from math import pi
+from pathlib import Path
+
+import numpy as np
+from benchmarks.agreement import arm_of, runner_of
+from tests.support.sampled import PYTHON_OFTEN
+from tests.support.serial_urdf import serial_urdf
+
+from ikgen.derivation.derive import derive
+from ikgen.records.request import Request
+from ikgen.verify.completeness import survey
+from ikgen.verify.sampling import SampleSet
+from ikgen.verify.trials import run_trial
+
+ON_A_RAIL = [
+    ("-0.06 0 0", f"0 0 {-pi / 2}"), ("0.075 0 -0.268", "0 0 0"), ("0.282 0 0", f"{pi / 2} 0 0"),
+    ("-0.229 0.242 0", f"{-pi / 2} 0 0"), ("0.219 0 0", "0 0 0"), ("0 -0.354 0", f"{pi / 2} 0 0"),
+]  # fmt: skip
+
+
+@PYTHON_OFTEN
+def test_none_is_lost_where_one_elimination_misses_it_twice(language: str, tmp_path: Path) -> None:
+    robot = serial_urdf(tmp_path / "rail.urdf", ON_A_RAIL, slides={0: "0 0 1"}, limit=3.3)
+    derivation = derive(Request(robot))
+    under, random = arm_of(derivation), np.random.default_rng(0)
+    q = np.array([-0.1, 0.0, pi / 2, pi, 0.0, pi]) + 3e-7 * random.normal(size=(100, 6))
+    sample = SampleSet("roots that meet", q, under.oracle.forward(q), under.sigma(q))
+    assert sample.sigma.min() > 0.04
+    runner = runner_of(derivation, language, tmp_path)
+    trial = run_trial(runner, under, sample, limits=True)
+    missed = np.flatnonzero(survey(under, runner, [trial]).missed)
+    assert not len(missed), (len(missed), q[missed[0]].tolist())
+    assert set(trial.rows.count.tolist()) == {6}
