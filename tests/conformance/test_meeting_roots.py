@@ -1,4 +1,4 @@
-"""Regular solutions whose roots nearly meet those of others, in an angle that an elimination hides."""
+"""Solutions whose roots nearly meet those of others."""
 
 from __future__ import annotations
 
@@ -20,6 +20,29 @@ ON_A_RAIL = [
     ("-0.06 0 0", f"0 0 {-pi / 2}"), ("0.075 0 -0.268", "0 0 0"), ("0.282 0 0", f"{pi / 2} 0 0"),
     ("-0.229 0.242 0", f"{-pi / 2} 0 0"), ("0.219 0 0", "0 0 0"), ("0 -0.354 0", f"{pi / 2} 0 0"),
 ]  # fmt: skip
+SLIDE_IN_THE_FOREARM = [
+    ("0 0 -0.254", "0 0 0"), ("-0.106 0.09 0", f"{pi / 2} 0 0"), ("-0.255 -0.385 0", f"{pi / 2} 0 0"),
+    ("0.152 0 0", f"{-pi / 2} 0 0"), ("0 -0.362 0", f"{-pi / 2} 0 0"), ("-0.321 0.181 0", f"{pi / 2} 0 0"),
+]  # fmt: skip
+
+
+@PYTHON_OFTEN
+def test_a_direction_is_told_that_the_digits_of_a_double_root_leave(
+    language: str, tmp_path: Path
+) -> None:
+    """Joint 1 nearly straight, its direction 1e-5 to 9e-5 long, where a quartic has nearly double roots."""
+    robot = serial_urdf(
+        tmp_path / "slide.urdf", SLIDE_IN_THE_FOREARM, slides={3: "0 0 1"}, limit=3.3
+    )
+    derivation = derive(Request(robot))
+    under, random = arm_of(derivation), np.random.default_rng(0)
+    q = np.array([pi, pi, pi, -0.2, -pi, -pi / 2]) + 1e-4 * random.normal(size=(100, 6))
+    q[:, 1] = pi + random.choice([-1e-5, 1e-5], 100) * random.uniform(1.0, 9.0, 100)
+    sample = SampleSet("double roots", q, under.oracle.forward(q), under.sigma(q))
+    trial = run_trial(runner_of(derivation, language, tmp_path), under, sample, limits=True)
+    gaps = np.abs(under.difference(trial.rows.q, q[:, None])).max(axis=2)
+    missed = np.flatnonzero(np.nanmin(gaps, axis=1) > 1e-3)
+    assert not len(missed), (len(missed), q[missed[0]].tolist())
 
 
 @PYTHON_OFTEN

@@ -213,8 +213,11 @@ def natural_size(e: Expr) -> float:
     return float(np.max(np.abs(finite))) if finite.size else 1.0
 
 
-def divisor_of(g: ExpressionGraph, value: Expr, tol: Tolerances, power: int = 1) -> Divisor:
-    """An expression as a divisor; `power` 2 where it is a sum of squares."""
+def divisor_of(
+    g: ExpressionGraph, value: Expr, tol: Tolerances, power: int = 1, *, squares: bool = False
+) -> Divisor:
+    """An expression as a divisor; `power` 2 where it is judged as a sum of squares, `squares` where it is
+    one: the bound of that leaves a direction more than half of the digits."""
     if value.is_fixed:
         return Divisor(value)
     size = natural_size(value)
@@ -222,7 +225,8 @@ def divisor_of(g: ExpressionGraph, value: Expr, tol: Tolerances, power: int = 1)
     found = Divisor(value, None, None, magnitude, size, power)
     off = min(tol.lost(value) / (power * size), tol.flag)
     regular = found.above(g, max(tol.singular, off))
-    if tol.double is not None and regular is not None:
+    squares = squares or power == 2
+    if tol.double is not None and regular is not None and not squares:
         least = g.select(tol.double, g.const(_HALF_OF_DIGITS * size), regular.args[1])
         regular = g.binary("gt", magnitude, least)
     clear = found.above(g, tol.flag if power == 1 else tol.norm)

@@ -94,7 +94,7 @@ class LinearPair(Form):
             x = g.dot([self.a1, self.a2], [self.c1, self.c2])
             y = y if sign > 0 else g.neg(y)
             power = 2 if tolerances.error > ROUNDED else 1
-        divisor = divisor_of(g, det, tolerances, power)
+        divisor = divisor_of(g, det, tolerances, power, squares=sign != 0)
         if det.is_fixed:
             return LoweredForm((g.div(x, det), g.div(y, det)), divisor, None, 1)
         if sign and power == 1:
