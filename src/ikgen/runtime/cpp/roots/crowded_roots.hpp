@@ -35,7 +35,7 @@ template <int M> inline void derive(const double (&p)[M], double (&out)[M - 1]) 
 // Where it vanishes between places where it is below 0 and above it: by Newton's method, or halving.
 template <int M> inline double zero_between(const double (&p)[M], double low, double high) noexcept {
   constexpr int kSteps = 64;
-  double slope[M - 1], x = 0.5 * (low + high);
+  double slope[M - 1] = {}, x = 0.5 * (low + high);
   derive(p, slope);
   for (int i = 0; i < kSteps; ++i) {
     const double y = value(p, x), rise = value(slope, x);
