@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 from tests.support.solving import FIXTURES
-from tests.support.waiting_program import assert_ended, script_of, wait_until_started
+from tests.support.waiting_program import assert_ended, compiler_of, script_of, wait_until_started
 
 from ikgen.derivation.read import read
 from ikgen.errors import BadDescriptionError, VerificationError
@@ -142,10 +142,7 @@ def test_a_compiler_ends_with_a_verification_that_does(
 ) -> None:
     scratch, number = tmp_path / "scratch", tmp_path / "number"
     scratch.mkdir()
-    compiler = tmp_path / "compiler"
-    compiler.write_text(f'#!/bin/sh\n[ "$1" = -v ] && exit\n{script_of(number)}\n')
-    compiler.chmod(0o755)
-    monkeypatch.setenv("CXX", str(compiler))
+    monkeypatch.setenv("CXX", compiler_of(tmp_path, script_of(number)))
     monkeypatch.setattr(tempfile, "tempdir", str(scratch))
 
     def fail(*_: object, **__: object) -> None:

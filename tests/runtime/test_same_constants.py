@@ -20,6 +20,7 @@ ALSO = {
     "arm/limit_margins": ("arm/joint_bounds",),
     "arm/task_interface": ("arrays/constants",),
     "elimination/general_6r": ("elimination/general_6r_runs",),
+    "elimination/hidden_angle": ("elimination/general_6r_spectrum",),
     "held/branch_arcs": ("held/branch_arc",),
     "held/held_grid_search": ("held/lone_value",),
     "held/solution_search": ("held/seeds_row", "held/values_descent"),

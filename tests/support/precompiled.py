@@ -9,7 +9,7 @@ import subprocess
 from pathlib import Path
 
 from ikgen.errors import MissingToolError
-from ikgen.verify.runners.cpp_toolchain import LEAN, find_compiler, find_eigen
+from ikgen.verify.runners.cpp_toolchain import LEAN, find_compiler, find_eigen, is_gcc
 
 __all__ = ["OPTIONS", "compilers"]
 
@@ -51,7 +51,7 @@ def compilers() -> Path | None:
         return None
     version = subprocess.run([*compiler, "--version"], capture_output=True, text=True).stdout
     own = FOLDER in Path(compiler[0]).parents
-    if own or "CXX" in os.environ or "Free Software Foundation" not in version:
+    if own or "CXX" in os.environ or not is_gcc(tuple(compiler)):
         return None
     key = "\n".join([version, *compiler, str(eigen), HEADERS, SCRIPT, GARBAGE, *LEAN])
     folder = FOLDER / hashlib.sha256(key.encode()).hexdigest()[:16]

@@ -1,4 +1,4 @@
-"""A program that waits to be ended, and whether it was."""
+"""A program that waits to be ended, and whether it was; compilers that do as told."""
 
 from __future__ import annotations
 
@@ -8,12 +8,20 @@ from pathlib import Path
 
 import pytest
 
-__all__ = ["assert_ended", "script_of", "wait_until_started"]
+__all__ = ["assert_ended", "compiler_of", "script_of", "wait_until_started"]
 
 
 def script_of(number: Path) -> str:
     """What sh is to run: write its number, then wait."""
     return f"echo $$ > {number}.new; mv {number}.new {number}; sleep 600"
+
+
+def compiler_of(folder: Path, script: str) -> str:
+    """A compiler that does what sh makes of the script, but when asked for its version: its command."""
+    path = folder / "compiler"
+    path.write_text(f'#!/bin/sh\n[ "$1" = -v ] && exit\n{script}\n')
+    path.chmod(0o755)
+    return str(path)
 
 
 def wait_until_started(number: Path) -> None:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 from tests.support.fake_arms import tree_of
-from tests.support.waiting_program import assert_ended, script_of, wait_until_started
+from tests.support.waiting_program import assert_ended, compiler_of, script_of, wait_until_started
 
 from ikgen.errors import BadDescriptionError, MissingToolError, VerificationError
 from ikgen.verify.oracle import PinocchioOracle
@@ -261,14 +261,6 @@ def test_header_that_cannot_be_used(planar: CppHeader, tmp_path: Path) -> None:
         header(tmp_path, HEADER.replace("int count = 0;", "int count = zero;"))
 
 
-def compiler(folder: Path, script: str) -> str:
-    """A compiler of one's own: its command."""
-    path = folder / "compiler"
-    path.write_text(f'#!/bin/sh\n[ "$1" = -v ] && exit\n{script}\n')
-    path.chmod(0o755)
-    return str(path)
-
-
 @pytest.mark.skipif(os.name == "nt", reason="needs sh")
 @pytest.mark.parametrize("how", ["closed", "dropped"])
 def test_nothing_of_a_header_that_is_still_compiled_is_left(
@@ -277,7 +269,7 @@ def test_nothing_of_a_header_that_is_still_compiled_is_left(
     scratch, number = tmp_path / "scratch", tmp_path / "number"
     scratch.mkdir()
     monkeypatch.setattr(tempfile, "tempdir", str(scratch))
-    monkeypatch.setenv("CXX", compiler(tmp_path, script_of(number)))
+    monkeypatch.setenv("CXX", compiler_of(tmp_path, script_of(number)))
     (tmp_path / "planar_ik.hpp").write_text(HEADER)
     runner = CppHeader(tmp_path / "planar_ik.hpp", constants())
     wait_until_started(number)
@@ -294,7 +286,7 @@ def test_nothing_of_a_header_that_is_still_compiled_is_left(
 def test_a_compiler_s_words_are_told_at_each_use(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setenv("CXX", compiler(tmp_path, "echo 'x.hpp:1:7: error: no x' >&2; exit 1"))
+    monkeypatch.setenv("CXX", compiler_of(tmp_path, "echo 'x.hpp:1:7: error: no x' >&2; exit 1"))
     (tmp_path / "planar_ik.hpp").write_text(HEADER)
     runner = CppHeader(tmp_path / "planar_ik.hpp", constants())
     for _ in range(2):

@@ -138,18 +138,17 @@ def run_program(
 def _started(
     command: Sequence[str], cwd: Path | None, environment: Mapping[str, str] | None
 ) -> subprocess.Popen[bytes]:
-    guarded = [*_dying_command(), *command]
-    bound = len(guarded) > len(command) and shutil.which(command[0]) is not None
+    guard = _dying_command() if shutil.which(command[0]) else ()
     try:
         return subprocess.Popen(
-            guarded if bound else command,
+            [*guard, *command],
             cwd=cwd,
             env=None if environment is None else {**environment},
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.PIPE,
             start_new_session=True,
-            preexec_fn=None if bound else _dying_with_parent(),
+            preexec_fn=None if guard else _dying_with_parent(),
         )
     except (OSError, ValueError, subprocess.SubprocessError) as error:
         reason = error.strerror if isinstance(error, OSError) else str(error)

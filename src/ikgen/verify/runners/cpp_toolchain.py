@@ -29,6 +29,7 @@ __all__ = [
     "compile_program",
     "find_compiler",
     "find_eigen",
+    "is_gcc",
 ]
 
 LIGHT = ("-O1",)
@@ -156,13 +157,13 @@ def _command(
 ) -> list[str]:
     includes = [f"-I{directory}" for directory in include]
     compiler = find_compiler()
-    lean = LEAN if set(LIGHT) <= set(options) and _is_gcc(tuple(compiler)) else ()
+    lean = LEAN if set(LIGHT) <= set(options) and is_gcc(tuple(compiler)) else ()
     command = [*compiler, "-std=c++17", *_ROOM, *options, *lean, *includes]
     return [*command, "-isystem", str(find_eigen()), *map(str, sources), "-o", str(output)]
 
 
 @cache
-def _is_gcc(compiler: tuple[str, ...]) -> bool:
+def is_gcc(compiler: tuple[str, ...]) -> bool:
     """Whether a compiler is GCC's, as it tells; raises `MissingToolError` where that takes too long."""
     told = run_program([*compiler, "-v"], environment={**os.environ, "LC_ALL": "C"})
     if told.late:

@@ -108,7 +108,16 @@ inline Mat<2 * N, 2 * N> quarter_turned(const Mat<N, 2 * N>& top, const Mat<N, 2
 
 // Of the eigenproblem's entries: rounding, grown by their square, hides whether a root is real, or half of its digits are
 // rounding; of the largest pivot of M_pi over its least: nearly all are.
-inline constexpr double kBlurred = 1e6, kNoRank = 1e9, kNoPivot = 1e11;
+inline constexpr double kBlurred = 1e6;
+inline constexpr double kNoRank = 1e9;
+inline constexpr double kNoPivot = 1e11;
+
+template <class M>
+inline double largest_entry(const M& A) noexcept {
+  double largest = 0.0;
+  for (const double entry : A.v) largest = std::max(largest, std::abs(entry));
+  return largest;
+}
 
 // rad: imaginary part below which a root is real, or may be half of a double one, and one of four a quarter of a fourfold
 // one.
@@ -201,8 +210,7 @@ inline Spectrum find_roots(const Mat<6, 16>& E, const Mat<14, 12>& left, const R
   add_product<12>(2.0, lift(x), 0, 0, N, 0, top);
   add_product<12>(2.0, lift(y), 0, 0, N, 0, bottom);
   Mat<16, 16> A = quarter_turned(top, bottom);
-  double largest = 0.0;
-  for (const double entry : A.v) largest = std::max(largest, std::abs(entry));
+  const double largest = largest_entry(A);
   std::array<Complex, 16> t;
   if (!eigenvalues(A, t)) return out;
   out.real = 0;

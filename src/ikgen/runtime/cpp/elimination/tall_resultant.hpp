@@ -105,8 +105,7 @@ inline bool find_tall_roots(const Mat<6, 16>& E, const Mat<14, 12>& left, const 
   add_product<16>(2.0, lift_both(x), 0, 0, solved, 0, top);
   add_product<16>(2.0, lift_both(y), 0, 0, solved, 0, bottom);
   Mat<32, 32> A = quarter_turned(top, bottom);
-  out.sharp = true;
-  for (const double entry : A.v) out.sharp = out.sharp && std::abs(entry) < kBlurred;
+  out.sharp = largest_entry(A) < kBlurred;
   return eigenvalues(A, out.t);
 }
 

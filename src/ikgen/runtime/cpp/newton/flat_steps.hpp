@@ -19,7 +19,7 @@ template <class Arm> struct FlatSteps {
   [[gnu::cold, gnu::noinline]] static bool refine_from(const double* start, double* q, const Aim& aim) noexcept {
     double trial[Arm::kDof], best = kInfinity;
     std::copy_n(start, Arm::kDof, trial);
-    for (int i = 0; i < kSteps && best > kEnough; ++i) {
+    for (int i = 0; i < kFlatSteps && best > kFlatEnough; ++i) {
       PoseError<Arm> at(trial, aim);
       if (at.largest() < best) {
         best = at.largest();
@@ -31,9 +31,10 @@ template <class Arm> struct FlatSteps {
   }
 
  private:
-  static constexpr int kSteps = 60, kSweeps = 12, kCount = PoseError<Arm>::kCount;
-  static constexpr double kLongest = 0.3;  // rad or m: along one direction
-  static constexpr double kEnough = 1e-14;
+  static constexpr int kFlatSteps = 60;
+  static constexpr int kSweeps = 12, kCount = PoseError<Arm>::kCount;
+  static constexpr double kFlatLongest = 0.3;  // rad or m: along one direction
+  static constexpr double kFlatEnough = 1e-14;
   static constexpr double kAcross = 1e-15;  // cosine of directions that are at right angles
 
   // Along each singular direction as far as it is to no error there, of rotations that leave the slope's columns at right
@@ -54,7 +55,7 @@ template <class Arm> struct FlatSteps {
         along += at.slope[r][j] * at.error[r];
       }
       if (!(square > 0.0)) continue;
-      along = std::clamp(along / square, -kLongest, kLongest);
+      along = std::clamp(along / square, -kFlatLongest, kFlatLongest);
       for (int i = 0; i < Arm::kDof; ++i) q[i] += along * turned[i][j];
     }
   }
