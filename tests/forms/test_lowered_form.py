@@ -9,7 +9,14 @@ import pytest
 from tests.support.probed import given
 
 from ikgen.algebra.expression_graph import ExpressionGraph
-from ikgen.forms.lowered_form import ROUNDED, Tolerances, at_least, divisor_of, leading
+from ikgen.forms.lowered_form import (
+    ROUNDED,
+    Tolerances,
+    at_least,
+    divisor_of,
+    leading,
+    sign_of_squares,
+)
 
 SHARES = np.array([1.0, 0.5, 1e-2, 1e-5, 1e-9, 0.0])
 
@@ -111,3 +118,14 @@ def test_a_root_may_be_as_far_outside_as_round_off_of_what_came_before_moved_it(
     assert list(plain.probe > 0.5) == [False, False, False]
     after = replace(tolerances, margin=lambda e: given(g, under)).guard(g, given(g, value), 1.0)
     assert list(after.probe > 0.5) == [True, False, False]
+
+
+def test_sums_of_squares_are_told_by_how_they_are_written() -> None:
+    g = ExpressionGraph(3)
+    a, b = given(g, np.array([1.0, 2.0, 3.0])), given(g, np.array([2.0, -1.0, 0.5]))
+    square = g.add(g.square(a), g.square(b))
+    assert sign_of_squares(square) == sign_of_squares(g.mul(g.const(0.5), square)) == 1
+    assert sign_of_squares(g.neg(square)) == sign_of_squares(g.mul(g.const(-2.0), square)) == -1
+    assert sign_of_squares(g.sub(g.neg(g.square(a)), g.square(b))) == -1
+    for neither in (a, g.mul(a, b), g.sub(g.square(a), g.square(b)), g.add(square, b)):
+        assert sign_of_squares(neither) == 0

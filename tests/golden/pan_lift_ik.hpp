@@ -688,6 +688,74 @@ template <class Arm> struct PoseError {
   }
 };
 
+// --- flat steps ----------------------------------------------------------------------------------
+template <class Arm> struct FlatSteps {
+  using Aim = HeldAim<Arm>;
+  using Policy = typename Arm::Policy;
+
+  [[gnu::cold, gnu::noinline]] static bool refine_from(const double* start, double* q, const Aim& aim) noexcept {
+    double trial[Arm::kDof], best = kInfinity;
+    std::copy_n(start, Arm::kDof, trial);
+    for (int i = 0; i < kFlatSteps && best > kFlatEnough; ++i) {
+      PoseError<Arm> at(trial, aim);
+      if (at.largest() < best) {
+        best = at.largest();
+        std::copy_n(trial, Arm::kDof, q);
+      }
+      step(at, trial);
+    }
+    return best < Policy::kArrived;
+  }
+
+ private:
+  static constexpr int kFlatSteps = 60;
+  static constexpr int kSweeps = 12, kCount = PoseError<Arm>::kCount;
+  static constexpr double kFlatLongest = 0.3;  // rad or m: along one direction
+  static constexpr double kFlatEnough = 1e-14;
+  static constexpr double kAcross = 1e-15;  // cosine of directions that are at right angles
+
+  static void step(PoseError<Arm>& at, double* q) noexcept {
+    double turned[Arm::kDof][Arm::kDof] = {};
+    for (int j = 0; j < Arm::kDof; ++j) turned[j][j] = 1.0;
+    bool going = true;
+    for (int sweep = 0; sweep < kSweeps && going; ++sweep) {
+      going = false;
+      for (int a = 0; a < Arm::kDof; ++a)
+        for (int b = a + 1; b < Arm::kDof; ++b) going = part(at.slope, turned, a, b) || going;
+    }
+    for (int j = 0; j < Arm::kDof; ++j) {
+      double square = 0.0, along = 0.0;
+      for (int r = 0; r < kCount; ++r) {
+        square += at.slope[r][j] * at.slope[r][j];
+        along += at.slope[r][j] * at.error[r];
+      }
+      if (!(square > 0.0)) continue;
+      along = std::clamp(along / square, -kFlatLongest, kFlatLongest);
+      for (int i = 0; i < Arm::kDof; ++i) q[i] += along * turned[i][j];
+    }
+  }
+
+  static bool part(double (&slope)[kCount][Arm::kDof], double (&turned)[Arm::kDof][Arm::kDof], int a, int b) noexcept {
+    double aa = 0.0, bb = 0.0, ab = 0.0;
+    for (const auto& row : slope) {
+      aa += row[a] * row[a];
+      bb += row[b] * row[b];
+      ab += row[a] * row[b];
+    }
+    if (!(std::abs(ab) > kAcross * std::sqrt(aa * bb))) return false;
+    const double half = 0.5 * (bb - aa) / ab, t = std::copysign(1.0, half) / (std::abs(half) + std::hypot(1.0, half));
+    const double c = 1.0 / std::hypot(1.0, t), s = c * t;
+    const auto turn = [&](double* row) noexcept {
+      const double x = row[a], y = row[b];
+      row[a] = c * x - s * y;
+      row[b] = s * x + c * y;
+    };
+    for (auto& row : slope) turn(row);
+    for (auto& row : turned) turn(row);
+    return true;
+  }
+};
+
 // --- joint range ---------------------------------------------------------------------------------
 inline double shortest(double gap, double turn = kTurn) noexcept {
   return gap > 0.5 * turn ? gap - turn : gap < -0.5 * turn ? gap + turn : gap;
@@ -2607,6 +2675,10 @@ template <class Arm> struct CarefulSolve {
     NearContinuum<Arm> curve(aim);
     curve.trace(start, passed);
     for (int k = 0; k < curve.met; ++k) end.take(aim, curve.found[k], out);
+    if (!end.exact && FlatSteps<Arm>::refine_from(start, end.q, aim)) {
+      RightRows<Arm>::add(aim, out, end.q, true);
+      return true;
+    }
     return end.exact;
   }
 

@@ -1243,6 +1243,9 @@ def _step(arm: _Arm, q: Array, T: Array, side: Array, before: _Stepped | None) -
 def _still(slope: Array, still: Array, damping: float) -> Array:
     """By four steps of inverse iteration, from what it was, which keeps its sense."""
     inverse = _normal_inverse(slope, damping)
+    inverse = (
+        inverse / np.trace(inverse, axis1=1, axis2=2)[:, None, None]
+    )  # its powers do not overflow
     twice = inverse @ inverse
     return _unit((twice @ (twice @ still[:, :, None]))[:, :, 0])[0]
 
@@ -1833,6 +1836,37 @@ def _held_there(arm: _Arm, aim: Array, row: Row, flag: bool) -> list[_Found]:
         if placed := _place_rows(arm, found, row, True):
             return placed
     return []
+
+
+# Newton's method on curves along which a pose hardly moves.
+
+
+_FLAT_STEPS = 60
+_FLAT_LONGEST = 0.3  # rad or arm lengths: a step along a singular direction
+_FLAT_ENOUGH = 1e-14  # error
+
+
+def _flat_steps(
+    chain: _Chain, task: _EntriesTask, moving: Sequence[int], q: Array, T: Array
+) -> tuple[Array, Array]:
+    """The best rows of undamped steps of the joints `moving` from q (k, dof) towards T (k, 4, 4), and their
+    errors (k,)."""
+    moving = list(moving)
+    best, result, going = np.full(len(q), inf), q.copy(), np.arange(len(q))
+    for _ in range(_FLAT_STEPS):
+        error, slope = _errors_and_slopes(chain, task, moving, q, T, None)
+        worst = np.abs(error).max(axis=1)
+        better = worst < best[going]
+        result[going[better]], best[going[better]] = q[better], worst[better]
+        on = worst > _FLAT_ENOUGH
+        if not on.any():
+            break
+        going, q, T, error, slope = (x[on] for x in (going, q, T, error, slope))
+        U, s, Vt = np.linalg.svd(slope, full_matrices=False)
+        along = np.einsum("kmi,km->ki", U, error) / np.maximum(s, 1e-300)
+        along = np.clip(along, -_FLAT_LONGEST, _FLAT_LONGEST)
+        q[:, moving] += np.einsum("kij,ki->kj", Vt, along)
+    return result, best
 
 
 # How far rows are from their joint limits, whatever turns they are on.
@@ -2448,16 +2482,21 @@ def _inside(arm: _Arm, asked: _Asked, i: int, found: list[_Found], limits: bool)
 
 def _led_to_or_along(arm: _Arm, asked: _Asked, rows: Array) -> list[list[_Found]]:
     """Of each pose what Newton steps from its row lead to, or else the solutions on a curve through it that
-    is a continuum of the arm's but for a little that is left."""
+    is a continuum of the arm's but for a little that is left, or what undamped steps lead to."""
     led = _led_to(arm, asked, rows)
     some = np.flatnonzero([not one for one in led])
-    if not len(some):
-        return led
-    aim, broken = asked.aim(arm, some), np.ones(len(some), dtype=bool)
-    _, owner, q, sigma = arm.around(arm, rows[some], aim, broken)
-    flags = (sigma < arm.policy.continuum_below).tolist()
-    for k, row in zip(some[owner].tolist(), zip(map(tuple, q.tolist()), flags)):
-        led[k].append(row)
+    if len(some):
+        aim, broken = asked.aim(arm, some), np.ones(len(some), dtype=bool)
+        _, owner, q, sigma = arm.around(arm, rows[some], aim, broken)
+        flags = (sigma < arm.policy.continuum_below).tolist()
+        for k, row in zip(some[owner].tolist(), zip(map(tuple, q.tolist()), flags)):
+            led[k].append(row)
+        some = np.flatnonzero([not one for one in led])
+    if len(some):
+        there, error = _flat_steps(arm.chain, arm.task, arm.moving, rows[some], asked.aim(arm, some))
+        some, there = some[error < arm.policy.arrived], there[error < arm.policy.arrived]
+        for k, found in zip(some.tolist(), _led_to(arm, asked.at(some), there)):
+            led[k] = found
     return led
 
 

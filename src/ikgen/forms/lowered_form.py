@@ -20,6 +20,7 @@ __all__ = [
     "divisor_of",
     "leading",
     "natural_size",
+    "sign_of_squares",
 ]
 
 
@@ -213,11 +214,9 @@ def natural_size(e: Expr) -> float:
     return float(np.max(np.abs(finite))) if finite.size else 1.0
 
 
-def divisor_of(
-    g: ExpressionGraph, value: Expr, tol: Tolerances, power: int = 1, *, squares: bool = False
-) -> Divisor:
-    """An expression as a divisor; `power` 2 where it is judged as a sum of squares, `squares` where it is
-    one: the bound of that leaves a direction more than half of the digits."""
+def divisor_of(g: ExpressionGraph, value: Expr, tol: Tolerances, power: int = 1) -> Divisor:
+    """An expression as a divisor; `power` 2 where it is a sum of squares, whose bound leaves a direction
+    more than half of the digits."""
     if value.is_fixed:
         return Divisor(value)
     size = natural_size(value)
@@ -225,8 +224,7 @@ def divisor_of(
     found = Divisor(value, None, None, magnitude, size, power)
     off = min(tol.lost(value) / (power * size), tol.flag)
     regular = found.above(g, max(tol.singular, off))
-    squares = squares or power == 2
-    if tol.double is not None and regular is not None and not squares:
+    if tol.double is not None and regular is not None and power == 1:
         least = g.select(tol.double, g.const(_HALF_OF_DIGITS * size), regular.args[1])
         regular = g.binary("gt", magnitude, least)
     clear = found.above(g, tol.flag if power == 1 else tol.norm)
@@ -237,6 +235,21 @@ def divisor_of(
 def leading(g: ExpressionGraph, coefficients: tuple[Expr, ...], tol: Tolerances) -> Divisor:
     """The sum of the squares of coefficients, as a divisor: where it vanishes the unknown is free."""
     return divisor_of(g, g.dot([*coefficients], [*coefficients]), tol, 2)
+
+
+def sign_of_squares(e: Expr) -> int:
+    """1 of a sum of squares, -1 of one that is subtracted, 0 of what is written as neither."""
+    if e.is_const:
+        return int(np.sign(e.value))
+    if e.op == "neg":
+        return -sign_of_squares(e.args[0])
+    if e.op == "mul":
+        a, b = e.args
+        return 1 if a is b else sign_of_squares(a) * sign_of_squares(b)
+    if e.op not in ("add", "sub"):
+        return 0
+    one, other = map(sign_of_squares, e.args)
+    return one if one == (other if e.op == "add" else -other) else 0
 
 
 def at_least(g: ExpressionGraph, value: Expr, least: Expr) -> Expr:

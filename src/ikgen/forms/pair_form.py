@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
@@ -12,7 +12,7 @@ from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.forms.form import Form
 from ikgen.forms.formula import Formula, FormulaWriter, equals, linear_combination
-from ikgen.forms.lowered_form import ROUNDED, LoweredForm, Tolerances, divisor_of
+from ikgen.forms.lowered_form import LoweredForm, Tolerances, divisor_of
 from ikgen.formulas import mathtext as m
 from ikgen.formulas.notation import quotient, show
 from ikgen.model.arrays import Array
@@ -20,9 +20,6 @@ from ikgen.model.arrays import Array
 __all__ = ["LinearPair"]
 
 _ALIKE = 1e-13
-
-_CLEAR = 1e-6
-"""A rotation times this length, squared (of its natural size), gives a direction to 13 digits."""
 
 
 def _alike(one: Array, other: Array, size: float) -> bool:
@@ -83,7 +80,7 @@ class LinearPair(Form):
 
     def lower(self, g: ExpressionGraph, sigma: Expr, tolerances: Tolerances) -> LoweredForm:
         """Cramer's rule with one division; by a rotation the constant sides are turned back, over its
-        length squared. Where no Newton steps win digits back, that square is what must not be small."""
+        length squared."""
         sign, power = self.rotation, 1
         y = g.sub(g.mul(self.a1, self.c2), g.mul(self.a2, self.c1))
         if sign == 0:
@@ -93,12 +90,10 @@ class LinearPair(Form):
             det = g.dot([self.a1, self.a2], [self.a1, self.a2])
             x = g.dot([self.a1, self.a2], [self.c1, self.c2])
             y = y if sign > 0 else g.neg(y)
-            power = 2 if tolerances.error > ROUNDED else 1
-        divisor = divisor_of(g, det, tolerances, power, squares=sign != 0)
+            power = 2
+        divisor = divisor_of(g, det, tolerances, power)
         if det.is_fixed:
             return LoweredForm((g.div(x, det), g.div(y, det)), divisor, None, 1)
-        if sign and power == 1:
-            divisor = replace(divisor, clear=divisor.above(g, _CLEAR))
         inverse = g.div(g.one, divisor.value)
         return LoweredForm((g.mul(x, inverse), g.mul(y, inverse)), divisor, None, 1)
 

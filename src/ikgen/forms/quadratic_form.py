@@ -12,7 +12,13 @@ from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.forms.form import Form
 from ikgen.forms.formula import Formula, FormulaWriter, equals, linear_combination
-from ikgen.forms.lowered_form import LoweredForm, Tolerances, divisor_of, natural_size
+from ikgen.forms.lowered_form import (
+    LoweredForm,
+    Tolerances,
+    divisor_of,
+    natural_size,
+    sign_of_squares,
+)
 from ikgen.formulas import mathtext as m
 from ikgen.formulas.mathtext import Math
 from ikgen.formulas.notation import grouped, quotient, show
@@ -53,9 +59,13 @@ class Quadratic(Form):
 
     def lower(self, g: ExpressionGraph, sigma: Expr, tolerances: Tolerances) -> LoweredForm:
         """With `b / 2` in place of `b`."""
-        divisor = divisor_of(g, self.a, tolerances)
-        half = g.mul(g.const(0.5), self.b)
-        disc = g.sub(g.square(half), g.mul(self.a, self.c))
+        a, b, c = self.a, self.b, self.c
+        sign = sign_of_squares(a)
+        if sign < 0:
+            a, b, c = g.neg(a), g.neg(b), g.neg(c)
+        divisor = divisor_of(g, a, tolerances, 2 if sign else 1)
+        half = g.mul(g.const(0.5), b)
+        disc = g.sub(g.square(half), g.mul(a, c))
         size = natural_size(disc)
         guard = tolerances.guard(g, disc, size)
         w = g.mul(sigma, g.sqrt(disc))

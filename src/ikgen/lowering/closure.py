@@ -55,10 +55,10 @@ def require_closure(work: Placement) -> None:
 
 
 def _bounded(work: Placement, parts: list[Expr], tolerance: float, where_lost: float) -> None:
-    """Squared parts are bounded by the tolerance's square, and wider where a step is seen to have lost
-    digits."""
+    """Squared parts are bounded by the tolerance's square, and wider where a divisor, or what a root is
+    taken of, nearly vanishes."""
     if parts:
-        g, rough = work.g, work.rough
+        g, rough = work.g, either(work.g, dict.fromkeys((*work.singular, *work.close)))
         total, most = g.dot(parts, parts), g.const(tolerance**2)
         if rough is not None and where_lost > tolerance:
             most = g.select(rough, g.const(where_lost**2), most)

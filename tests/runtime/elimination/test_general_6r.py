@@ -72,13 +72,24 @@ def test_one_run_does_where_it_is_clear_and_finds_what_it_says(
 
 
 def test_others_follow_until_they_find_all_that_is_known(monkeypatch: pytest.MonkeyPatch) -> None:
-    two, four = ([0, 1], 2, False), ([0, 1, 2, 3], 4, False)
-    assert run(monkeypatch, [two, two])[1] == 2
+    two, four = ([0, 1], 2, True), ([0, 1, 2, 3], 4, True)
+    assert run(monkeypatch, [([0, 1], 1, True), two])[1] == 2
     assert run(monkeypatch, [([0, 1], 2, True)][:1], ways=1)[1] == 1
-    q, calls = run(monkeypatch, [two, four, four])
+    q, calls = run(monkeypatch, [([0, 1], 1, True), four, four])
     assert calls == 3
     np.testing.assert_allclose(q, ROWS, atol=1e-12)
     assert run(monkeypatch, [([0], 1, True), two, two])[1] == 3  # rows come in pairs
+
+
+def test_roots_that_do_not_tell_ask_for_the_next_elimination(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Of a crowd the pose displaced leads to the same again."""
+    two, four = ([0, 1], 2, False), ([0, 1, 2, 3], 4, False)
+    assert run(monkeypatch, [two, two, two])[1] == 3
+    q, calls = run(monkeypatch, [two, two, four, four])
+    assert calls == 4
+    np.testing.assert_allclose(q, ROWS, atol=1e-12)
 
 
 def test_more_roots_of_displaced_poses_ask_for_the_next_elimination(
@@ -124,14 +135,14 @@ def test_an_elimination_without_rank_confirms_nothing(monkeypatch: pytest.Monkey
 
 def test_what_stalls_near_a_solution_asks_for_all_runs(monkeypatch: pytest.MonkeyPatch) -> None:
     two = ([0, 1, 2], 2, False)
-    assert run(monkeypatch, [two] * 9, error=1e-3)[1] == 2
+    assert run(monkeypatch, [two] * 9, error=1e-3)[1] == 3
     q, calls = run(monkeypatch, [two] * 10, error=1e-8)
     assert calls == 2 + 2 + 2 * 3
     np.testing.assert_allclose(q, ROWS[:2], atol=1e-12)
 
 
 def test_what_a_direct_way_says_there_is_does_not(monkeypatch: pytest.MonkeyPatch) -> None:
-    told = [([0, 1], 4, False), ([0, 1], 2, False)]
+    told = [([0, 1], 4, False), ([0, 1], 2, True)]
     q, calls = run(monkeypatch, told, direct=1)
     assert calls == 2
     np.testing.assert_allclose(q, ROWS[:2], atol=1e-12)

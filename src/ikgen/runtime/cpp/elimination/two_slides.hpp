@@ -20,7 +20,9 @@ namespace elimination {
 
 inline constexpr Index kFourNodes = 16;
 inline constexpr double kVanishing = 1e-15;  // value of a polynomial, lengths in the arm's, that is round-off
+inline constexpr double kBlurredQuartic = 1e-10;  // another, below which rounding moves roots too far to tell how many
 inline constexpr double kLarge = 100.0;  // another, in which roots are lost
+inline constexpr double kFoldedQuartic = 1e-5;  // divisor at a root below which other solutions may have the same angle
 
 // The other three angles for a hidden one.
 inline Triple beside_hidden(const RevoluteLoop& loop, double c, double s) noexcept {
@@ -140,7 +142,7 @@ inline Spectrum quartic_roots(const QuarticSamples& at) noexcept {
     return out;
   out.real = 0;
   add_angles(t, at.offset + 2.0 * kPi / kFourNodes * static_cast<double>(node), 0.03, out);
-  if (largest > kLarge) out.real = -1;
+  if (largest < kBlurredQuartic || largest > kLarge) out.real = -1;
   return out;
 }
 
@@ -152,6 +154,7 @@ inline Spectrum run_two_slides(const Chain& F, const Frame& T, const Frame& aim,
   for (int i = 0; i < roots.count; ++i) {
     const double angle = roots.theta[static_cast<Index>(i)], c = std::cos(angle), s = std::sin(angle);
     const Triple at = beside_hidden(loop, c, s);
+    if (std::abs(at.h) < kFoldedQuartic) roots.simple = false;
     const double y = std::sqrt(std::max(1.0 - at.x * at.x, 0.0));
     const std::array<Angles<double>, 2> both = {all_angles(at, c, s, y), all_angles(at, c, s, -y)};
     const double g[2] = {std::abs(triple_product(loop, both[0])), std::abs(triple_product(loop, both[1]))};

@@ -92,7 +92,7 @@ template <class Arm> struct CarefulSolve {
   }
 
   // Adds what Newton steps from a row lead to, or else the solutions on a curve through it that is a continuum of the arm's
-  // but for a little that is left; whether there are any.
+  // but for a little that is left, or what undamped steps lead to; whether there are any.
   static bool add_led_to(const Aim& aim, const double* start, typename NearContinuum<Arm>::Passed& passed,
                          Places& out) noexcept {
     RowStart<Arm> end;
@@ -107,6 +107,11 @@ template <class Arm> struct CarefulSolve {
     NearContinuum<Arm> curve(aim);
     curve.trace(start, passed);
     for (int k = 0; k < curve.met; ++k) end.take(aim, curve.found[k], out);
+    if constexpr (!Arm::kRefined)
+      if (!end.exact && FlatSteps<Arm>::refine_from(start, end.q, aim)) {
+        RightRows<Arm>::add(aim, out, end.q, true);
+        return true;
+      }
     return end.exact;
   }
 

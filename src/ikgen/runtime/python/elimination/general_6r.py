@@ -169,21 +169,21 @@ def six_joint_rows(
     as many solutions as real roots, each found to many digits. Otherwise more runs follow, with the pose
     displaced to both sides, by the next elimination and with the pose displaced by less, until they find
     all that is known and no more, an even number, none stalls near another, and one of the pose itself has
-    kept its rank; where solutions meet, or displaced poses have more roots, so has the next
-    elimination.
+    kept its rank; where solutions meet, displaced poses have more roots, or the pose's own do not tell how
+    many are real, so has the next elimination.
     """
     T = T.copy()
     T[:, :3, 3] /= plan.length
     found, of = np.zeros((0, 6)), np.zeros(0, dtype=np.intp)
     todo = np.flatnonzero(np.abs(T[:, :3]).max(axis=(1, 2), initial=0.0) < 1e6)  # false for NaN
-    hollow, unsure = np.zeros((2, size := len(T)), dtype=bool)
+    hollow, unsure, blurred = np.zeros((3, size := len(T)), dtype=bool)
     least = np.full(size, -1)
     for number, (way, moves) in enumerate(_runs(plan)):
         if not len(todo):
             break
         (pose, q, before), real, clear, stalled = _run(six, plan, way, moves, T, todo, policy)
         own, told = moves[0] is None, number >= len(plan.direct)
-        beside = _noted(real, clear, todo, own, told, (least, unsure))
+        beside = _noted(real, clear, todo, own, told, (least, unsure, blurred))
         best = np.lexsort((before >= way[2], pose))
         q, pose, kept = distinct_rows(q[best], pose[best], plan.turning, policy.coincident)
         mine = np.bincount(pose, minlength=size)[todo]
@@ -200,7 +200,7 @@ def six_joint_rows(
             ranked = (least[todo] >= 0) & ~stalled & (~hollow[todo] | (len(moves) > 1))
             settled = ranked & (mine == known) & (known == count) & (count % 2 == 0)
             others = number > len(plan.direct) + 1  # one alone may miss the same of a crowd twice
-            settled &= others | (count >= beside)
+            settled &= others | (count >= beside) & ~blurred[todo]
             left = np.flatnonzero(ranked & others & ~settled)
             settled[left] = _same_apart(six, plan, todo[left], ((found, of), old, (q, pose)))
         settled &= (count >= least[todo]) & ((count > 0) | ~unsure[todo])
@@ -215,15 +215,16 @@ def _noted(
     todo: Index,
     own: bool,
     told: bool,
-    marks: tuple[Index, Flags],
+    marks: tuple[Index, Flags, Flags],
 ) -> Index:
     """Enters what a run tells of the poses `todo` by its `real` roots (m, k), those of the pose itself
-    first if it is its `own`: of all poses (N,) how many solutions there are at least, and which may have
-    some, whatever is found. The most roots (k,) of a displaced pose."""
-    least, unsure = marks
+    first if it is its `own`: of all poses (N,) how many solutions there are at least, which may have some,
+    whatever is found, and whose own roots do not tell. The most roots (k,) of a displaced pose."""
+    least, unsure, blurred = marks
     if own and told:
         least[todo] = np.maximum(least[todo], real[0])
-        unsure[todo] |= (real[0] < 0) | ~clear
+        blurred[todo] |= (real[0] < 0) | ~clear
+        unsure |= blurred
     beside: Index = real[int(own) :].max(axis=0, initial=0)
     unsure[todo] |= beside > 0
     return beside

@@ -37,6 +37,10 @@ _QUARTIC_OFFSETS = np.array(
 )  # rad, of the nodes: one where no divisor is small
 _WELL_APART = 1e-3  # divisors above it need no other nodes
 _VANISHING = 1e-15  # value of a polynomial, lengths in the arm's, that is round-off
+_BLURRED_QUARTIC = (
+    1e-10  # value below which rounding moves roots too far to tell how many there are
+)
+_FOLDED_QUARTIC = 1e-5  # divisor at a root below which other solutions may have the same angle
 _LARGE = 100.0  # value of a polynomial, lengths in the arm's, in whose rounding roots are lost
 _QUARTIC_DEGREE = 4
 _QUARTIC_HARMONICS = np.arange(-_QUARTIC_DEGREE, _QUARTIC_DEGREE + 1)
@@ -120,9 +124,11 @@ def two_slide_candidates(
     values, offset = _quartic_values(loop, len(T))
     t, about = _quartic_roots(values, offset)
     pose, angle, least, simple = real_angles(t, about, 0.03)
-    least[np.abs(values).max(axis=1) > _LARGE] = -1
+    largest = np.abs(values).max(axis=1)
+    least[(largest < _BLURRED_QUARTIC) | (largest > _LARGE)] = -1
     loop = loop.of(pose)
-    _, c, s = _beside_hidden(loop, angle)
+    h, c, s = _beside_hidden(loop, angle)
+    simple &= np.bincount(pose[np.abs(h) < _FOLDED_QUARTIC], minlength=len(T)) == 0
     p, u = displacement(loop, c, s)
     g = np.abs(_triple_product(p, u))
     branch, k = np.nonzero(g <= 1e3 * g[::-1] + 1e-6)  # the one of which it is a root, or both

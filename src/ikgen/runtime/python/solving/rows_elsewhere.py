@@ -107,20 +107,19 @@ def _inside(arm: Arm, asked: Asked, i: int, found: list[Found], limits: bool) ->
 
 def _led_to_or_along(arm: Arm, asked: Asked, rows: Array) -> list[list[Found]]:
     """Of each pose what Newton steps from its row lead to, or else the solutions on a curve through it that
-    is a continuum of the arm's but for a little that is left."""
+    is a continuum of the arm's but for a little that is left, or what undamped steps lead to."""
     led = led_to(arm, asked, rows)
     some = np.flatnonzero([not one for one in led])
-    if not len(some):
-        return led
-    if arm.around is None:
-        there, error = flat_steps(arm.chain, arm.task, arm.moving, rows[some], asked.T[some])
+    if arm.around is not None and len(some):
+        aim, broken = asked.aim(arm, some), np.ones(len(some), dtype=bool)
+        _, owner, q, sigma = arm.around(arm, rows[some], aim, broken)
+        flags = (sigma < arm.policy.continuum_below).tolist()
+        for k, row in zip(some[owner].tolist(), zip(map(tuple, q.tolist()), flags)):
+            led[k].append(row)
+        some = np.flatnonzero([not one for one in led])
+    if len(some):
+        there, error = flat_steps(arm.chain, arm.task, arm.moving, rows[some], asked.aim(arm, some))
         some, there = some[error < arm.policy.arrived], there[error < arm.policy.arrived]
         for k, found in zip(some.tolist(), led_to(arm, asked.at(some), there)):
             led[k] = found
-        return led
-    aim, broken = asked.aim(arm, some), np.ones(len(some), dtype=bool)
-    _, owner, q, sigma = arm.around(arm, rows[some], aim, broken)
-    flags = (sigma < arm.policy.continuum_below).tolist()
-    for k, row in zip(some[owner].tolist(), zip(map(tuple, q.tolist()), flags)):
-        led[k].append(row)
     return led
