@@ -6,9 +6,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from benchmarks.agreement import arm_of, runner_of
 from tests.support.both_languages import emitted_in_both, header_of
+from tests.support.dh_files import dh_file
 from tests.support.redundant_arms import Joint, serial_urdf
 from tests.support.row_gaps import row_gaps
+from tests.support.sampled import PYTHON_OFTEN
 from tests.support.solving import FIXTURES, NO_COMPILER
 
 from ikgen.derivation.derive import derive
@@ -26,6 +29,26 @@ LIFT: tuple[Joint, ...] = (
 )
 """The y axis of the tool lies along that of the pitch where the wrist is not rolled: all but the lift, the
 arm and the pitch are the same then in two solutions."""
+
+EIGHT = (
+    ("revolute", 0.0, 0.0, 0.8504392468535797, 0.0),
+    ("revolute", "pi/2", 0.5573812381766646, 0.0, 0.0),
+    ("prismatic", "pi/2", 0.8946160701903778, 0.0, "pi/2"),
+    ("revolute", "pi/2", 0.0, 0.6213572887019925, 0.0),
+    ("revolute", "pi/2", 0.3022211447231815, 0.0, 0.0),
+    ("revolute", "-pi/2", 0.336405713244554, 0.0, 0.0),
+)
+"""Joints 1, 4 and 6 are at right angles, to either side, in all of eight solutions of a pose."""
+
+
+@PYTHON_OFTEN
+@pytest.mark.parametrize("noise", [0.0, 1e-6])
+def test_all_of_four_are_found(noise: float, language: str, tmp_path: Path) -> None:
+    derivation = derive(Request(dh_file(tmp_path / "arm.toml", EIGHT)))
+    under, runner = arm_of(derivation), runner_of(derivation, language, tmp_path)
+    q = np.array([-1.0, 0.0, 0.0, -1.0, 1.0, 1.0]) * np.pi / 2
+    poses = under.oracle.forward(q + noise * np.random.default_rng(0).normal(size=(50, 6)))
+    assert runner.solve_many(poses).count.tolist() == [8] * 50
 
 
 @pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "compiles")

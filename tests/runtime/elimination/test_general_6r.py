@@ -105,11 +105,11 @@ def test_where_solutions_meet_the_next_elimination_settles_how_many_there_are(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     three = ([0, 1, 2], 2, False)
-    assert run(monkeypatch, [three] * 10)[1] == 10
+    assert run(monkeypatch, [three] * 13)[1] == 13
     monkeypatch.setattr(
         general_6r, "smallest_singular_values", lambda chain, task, moving, q: np.zeros(len(q))
     )
-    q, calls = run(monkeypatch, [three] * 10)
+    q, calls = run(monkeypatch, [three] * 13)
     assert calls == 3
     np.testing.assert_allclose(q, ROWS[:3], atol=1e-12)
 
@@ -136,8 +136,8 @@ def test_an_elimination_without_rank_confirms_nothing(monkeypatch: pytest.Monkey
 def test_what_stalls_near_a_solution_asks_for_all_runs(monkeypatch: pytest.MonkeyPatch) -> None:
     two = ([0, 1, 2], 2, False)
     assert run(monkeypatch, [two] * 9, error=1e-3)[1] == 3
-    q, calls = run(monkeypatch, [two] * 10, error=1e-8)
-    assert calls == 2 + 2 + 2 * 3
+    q, calls = run(monkeypatch, [two] * 13, error=1e-8)
+    assert calls == 2 + 2 + 3 * 3
     np.testing.assert_allclose(q, ROWS[:2], atol=1e-12)
 
 

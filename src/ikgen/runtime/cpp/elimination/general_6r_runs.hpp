@@ -42,8 +42,9 @@ inline Frame displacement(double by) noexcept {
 }
 
 // How far displaced poses are off. Farther off what more than two solutions that meet become is not real, or far from
-// them; closer by an elimination that has no rank at the pose leaves no digits.
-inline constexpr double kAside[] = {1e-3, 1e-6, 1e-8};
+// them, but regular ones come apart of which more than two share the hidden angle; closer by an elimination that has no
+// rank at the pose leaves no digits.
+inline constexpr double kAside[] = {1e-3, 0.03, 1e-6, 1e-8};
 
 // How many of the first rows there are, and whether solutions meet in any. There steps end at few digits, and rows that
 // lie close together count as one.
@@ -101,7 +102,7 @@ inline bool solve_in_runs(const Frames& F, const Frame& T, const Turning& turnin
     const Frame there = displacement(by), back = inverse(there);
     for (const std::array<int, 3>& plan : plans)
       for (const Frame* shift : {static_cast<const Frame*>(nullptr), &there, &back}) {
-        if (!shift && by < kAside[0]) continue;  // known by now
+        if (!shift && by != kAside[0]) continue;  // known by now
         Solutions mine;
         const Frame aim = shift ? compose(T, *shift) : T;
         const Spectrum roots = Run(F, T, aim, turning, plan, mine);

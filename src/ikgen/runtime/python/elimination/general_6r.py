@@ -145,9 +145,10 @@ def _displaced(by: float) -> tuple[Array, Array]:
 
 
 # At displaced poses roots come apart that right angles make coincide; Newton's method takes them back.
-# Farther off what more than two solutions that meet become is not real, or far from them; closer by an
-# elimination that has no rank at the pose leaves no digits.
-_ASIDE, _CLOSE = _displaced(1e-3), (_displaced(1e-6), _displaced(1e-8))
+# Farther off what more than two solutions that meet become is not real, or far from them, but regular ones
+# come apart of which more than two share the hidden angle; closer by an elimination that has no rank at the
+# pose leaves no digits.
+_ASIDE, _FARTHER, _CLOSE = _displaced(1e-3), _displaced(0.03), (_displaced(1e-6), _displaced(1e-8))
 
 
 def _runs(plan: Plan) -> list[tuple[Way, tuple[Array | None, ...]]]:
@@ -156,7 +157,7 @@ def _runs(plan: Plan) -> list[tuple[Way, tuple[Array | None, ...]]]:
     runs: list[tuple[Way, tuple[Array | None, ...]]] = [(way, (None,)) for way in plan.direct]
     runs += [(ways[0], (None,)), (ways[0], _ASIDE)]
     runs += [(way, (None, *_ASIDE)) for way in ways[1:]]
-    return runs + [(way, moves) for moves in _CLOSE for way in ways]
+    return runs + [(way, moves) for moves in (_FARTHER, *_CLOSE) for way in ways]
 
 
 def six_joint_rows(
