@@ -9,7 +9,6 @@ import sys
 
 import pytest
 from benchmarks.command_line import REPOSITORY
-from tests.support.sampled import sampled
 
 SAMPLES = {
     "kills": ("--kills", "3", "--seed", "1"),
@@ -19,7 +18,8 @@ SAMPLES = {
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="needs forks, signals and LD_PRELOAD")
-@pytest.mark.parametrize("name", sampled(SAMPLES, ["kills"]))
+@pytest.mark.long  # kills at any moment: tests/outputs/test_publish.py
+@pytest.mark.parametrize("name", SAMPLES)
 def test_nothing_is_lost_or_half(name: str) -> None:
     if name == "faults" and shutil.which("cc") is None:
         pytest.skip("needs a C compiler")

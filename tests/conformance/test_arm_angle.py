@@ -10,6 +10,7 @@ import pytest
 from numpy.typing import NDArray
 from tests.support.held_arms import held_module, imported
 from tests.support.redundant_arms import SHOULDER_ELBOW_WRIST, serial_urdf
+from tests.support.sampled import sampled
 from tests.support.solving import import_text
 
 from ikgen.derivation.derive import derive
@@ -25,10 +26,12 @@ Array = NDArray[np.float64]
 ELBOWS = {"arm_angle": (0.0, 1.0), "offset_elbow": (0.08, -1.0)}
 """How far the elbow's axis is beside the upper arm (m), and the way that the first axis points."""
 
+NAMES = (*ELBOWS, "rounded_arm_angle")
+
 FLAGS = ("kRounded", "kNewton")
 
 
-@pytest.fixture(scope="module", params=["arm_angle", "offset_elbow", "rounded_arm_angle"])
+@pytest.fixture(scope="module", params=NAMES)
 def arm(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> ModuleType:
     return imported(request.param, tmp_path_factory.mktemp("arm"))
 
@@ -96,6 +99,7 @@ def test_a_wrist_above_the_shoulder_is_solved(arm: ModuleType) -> None:
         assert not found.singular[0]
 
 
+@pytest.mark.parametrize("arm", sampled(NAMES, ELBOWS), indirect=True)
 def test_singular_poses_are_answered(arm: ModuleType) -> None:
     """Where several configurations of a continuum stand for it nothing but the pose tells them apart."""
     rng = np.random.default_rng(5)

@@ -130,6 +130,7 @@ def test_searches(both: Both, mode: int) -> None:
                 assert (gaps + np.eye(len(each))).min() > 4e-3
 
 
+@pytest.mark.long
 def test_the_best_row_may_be_at_an_end_on_a_limit_or_just_before_a_fold(tmp_path: Path) -> None:
     """Where joints are on a limit by a hair, and where slopes have no digits."""
     path = tmp_path / "rounded_wrist.urdf"

@@ -57,7 +57,7 @@ def robot(kind: str, folder: Path) -> Path:
     return serial_urdf(folder / "small.urdf", moving, tip=tip, slides=slides, limit=2.8)
 
 
-@pytest.mark.parametrize(("kind", "language"), in_languages(ORIGINS, ["alone"]))
+@pytest.mark.parametrize(("kind", "language"), in_languages(ORIGINS, []))
 def test_none_is_without_a_row(kind: str, language: str, tmp_path: Path) -> None:
     held = {"j0": None, "j1": None} if "mobile" in kind else {}
     derivation = derive(Request(robot(kind, tmp_path), free=held))

@@ -92,7 +92,7 @@ def test_none_is_without_a_row(name: str, language: str, tmp_path: Path) -> None
     assert not len(lost), (len(lost), q[lost[0]].tolist())
 
 
-@pytest.mark.parametrize("language", ["python", "cpp"])
+@PYTHON_OFTEN
 def test_last_digits_do_not_decide(language: str, tmp_path: Path) -> None:
     """What an elimination's roots are there hangs on how sums are rounded."""
     request, given = arm("slide", tmp_path)

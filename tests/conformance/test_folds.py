@@ -37,6 +37,12 @@ ARMS = ("ur5e", "doosan_m1013", "fanuc_crx10ia", "measured")
 ur5e with short offsets, whose quartic divides by them."""
 COMPILED = ("doosan_m1013",)
 """Those whose header is compiled in every run; that of ur5e is in test_cpp.py too."""
+SEEDED = [
+    pytest.param(seeded, *case.values, marks=case.marks)
+    for seeded, compiled in ((False, ()), (True, COMPILED))
+    for case in in_languages(ARMS, compiled)
+]
+"""Whether there is a seed, arms and languages; headers have one in every run."""
 
 MEASURED = {
     'xyz="-0.425 0 0"': 'xyz="-0.425628 -0.001152 0.000346"',
@@ -214,8 +220,7 @@ def special(count: int) -> Array:
     return np.asarray(q)
 
 
-@pytest.mark.parametrize(("made", "language"), in_languages(ARMS, COMPILED), indirect=["made"])
-@pytest.mark.parametrize("seeded", [False, True])
+@pytest.mark.parametrize(("seeded", "made", "language"), SEEDED, indirect=["made"])
 def test_nothing_is_lost(made: Made, language: str, seeded: bool) -> None:
     runner: Runner = getattr(made, language)
     trial = run_trial(runner, made.arm, made.sample, limits=False, seeded=seeded)

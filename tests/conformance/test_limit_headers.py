@@ -70,10 +70,8 @@ pytestmark = [
 ]
 
 
-@pytest.mark.parametrize(
-    ("name", "side"),
-    [("kuka_kr6r900sixx", 1.0), pytest.param("doosan_m1013", -1.0, marks=pytest.mark.long)],
-)
+@pytest.mark.long
+@pytest.mark.parametrize(("name", "side"), [("kuka_kr6r900sixx", 1.0), ("doosan_m1013", -1.0)])
 def test_configurations_on_a_limit_beside_a_singularity_are_found(
     name: str, side: float, tmp_path: Path
 ) -> None:
@@ -110,6 +108,7 @@ def test_configurations_on_a_limit_beside_a_straight_elbow_are_found(tmp_path: P
     assert (gap < 1e-6).all()
 
 
+@pytest.mark.long
 def test_configurations_on_the_limits_of_two_joints_where_rows_meet_are_found(
     tmp_path: Path,
 ) -> None:

@@ -47,7 +47,7 @@ def test_a_pose_lies_in_the_range_that_it_is_reached_from(both: Both) -> None:
         assert np.subtract(*slide_range(arm._ARM, arm.forward(q), 0)) < -300.0
 
 
-@pytest.mark.parametrize("mode", sampled([1, 2, 3], [1, 3]))
+@pytest.mark.parametrize("mode", sampled([1, 2, 3], [3]))
 def test_rows_are_found_wherever_on_the_rail(both: Both, mode: int) -> None:
     arm = both.arm
     seed = np.zeros(arm.DOF)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from benchmarks.agreement import arm_of, runner_of
 from numpy.typing import NDArray
-from tests.support.sampled import BOTH, PYTHON_OFTEN
+from tests.support.sampled import PYTHON_OFTEN
 from tests.support.serial_urdf import serial_urdf
 
 from ikgen.derivation.derive import derive
@@ -94,7 +94,7 @@ def test_two_solutions_are_found_where_a_quartic_has_one_root(
     assert sorted(near.tolist()) == [0, 1]
 
 
-@BOTH
+@PYTHON_OFTEN
 def test_a_slide_s_elimination_does_not_hide_what_is_singular(
     language: str, tmp_path: Path
 ) -> None:
@@ -111,7 +111,7 @@ def test_a_slide_s_elimination_does_not_hide_what_is_singular(
     assert sorted(set(index[found_at(found, q[index]) < 1e-6].tolist())) == [0, 1]
 
 
-@BOTH
+@PYTHON_OFTEN
 def test_a_straight_wrist_that_steps_come_to_from_aside_is_a_continuum(
     language: str, tmp_path: Path
 ) -> None:

@@ -245,7 +245,7 @@ def test_solutions_beside_a_continuum_are_found(kind: str, language: str, tmp_pa
     assert np.abs(space.residual(runner.forward(found), aims)).max() < 5e-9  # m, of 3 m
 
 
-@pytest.mark.parametrize(("kind", "language"), in_languages(CONTINUA, ["turns"]))
+@pytest.mark.parametrize(("kind", "language"), in_languages(CONTINUA, []))
 def test_a_continuum_has_a_row(kind: str, language: str, tmp_path: Path) -> None:
     """From whatever seed; with that of one of its configurations, this one."""
     rows, configurations, fixed = CONTINUA[kind]

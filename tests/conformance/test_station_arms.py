@@ -44,6 +44,7 @@ def test_a_curve_without_a_direction_is_given_up(tmp_path: Path) -> None:
     np.testing.assert_allclose(own, other, atol=1e-8)
 
 
+@pytest.mark.long  # by itself: tests/runtime/held/test_branch_ends.py
 def test_rows_that_move_far_before_they_meet_end_there(tmp_path: Path) -> None:
     """Some by more than a radian over a cell of the range: each pair that meets has one end, and so have
     all here."""

@@ -90,7 +90,11 @@ def _pointing(rpy: str, offset: float = 0.0027) -> tuple[tuple[str, str], ...]:
 
 
 @pytest.mark.parametrize(
-    ("rpy", "offset"), [*((rpy, 0.0027) for rpy in _ROUNDINGS), ("0 -1.57 3.14", 0.08)]
+    ("rpy", "offset"),
+    [
+        *((rpy, 0.0027) for rpy in _ROUNDINGS),
+        pytest.param("0 -1.57 3.14", 0.08, marks=pytest.mark.long),
+    ],
 )
 def test_roots_that_rounding_alone_parts_lose_no_pose(
     rpy: str, offset: float, tmp_path: Path

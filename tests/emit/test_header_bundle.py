@@ -116,7 +116,12 @@ def test_two_emitted_headers_in_one_source(tmp_path: Path) -> None:
 
 @needs_compiler
 @pytest.mark.parametrize(
-    "flag", ["-ffast-math", "-ffinite-math-only", "-funsafe-math-optimizations"]
+    "flag",
+    [
+        "-ffast-math",
+        "-ffinite-math-only",
+        pytest.param("-funsafe-math-optimizations", marks=pytest.mark.long),
+    ],
 )
 def test_other_arithmetic_than_of_doubles_is_refused(flag: str, tmp_path: Path) -> None:
     (tmp_path / "pan_lift_ik.hpp").write_text(emit_header(pan_lift()))

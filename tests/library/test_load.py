@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.support.sampled import sampled
 
 import ikgen
 from ikgen.errors import ArgumentError, IkgenError, UnknownNameError
@@ -101,7 +102,7 @@ def test_a_derivation_made_again_gives_the_same_module() -> None:
     assert emit_module(arm.derivation.whole.module) == arm.source
 
 
-@pytest.mark.parametrize("damage", ["", "{}", "[1]", '{"text": 1}'])
+@pytest.mark.parametrize("damage", sampled(["", "{}", "[1]", '{"text": 1}'], ["", "{}", "[1]"]))
 def test_a_broken_cache_is_none(cache: Path, damage: str) -> None:
     text = ikgen.load(ELBOW, samples=50).source
     (file,) = (cache / "solvers").glob("*.json")

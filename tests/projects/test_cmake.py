@@ -110,7 +110,8 @@ def two_arms(tmp_path: Path) -> Path:
 
 
 @needs_cmake
-@pytest.mark.parametrize("generator", sampled(["Ninja", "Unix Makefiles"], ["Ninja"]))
+@pytest.mark.long
+@pytest.mark.parametrize("generator", ["Ninja", "Unix Makefiles"])
 def test_only_the_affected_arm_is_generated_again(two_arms: Path, generator: str) -> None:
     if generator == "Ninja" and shutil.which("ninja") is None:
         pytest.skip("needs ninja")
@@ -130,6 +131,7 @@ def test_only_the_affected_arm_is_generated_again(two_arms: Path, generator: str
 
 
 @needs_cmake
+@pytest.mark.long  # that a depfile has the version: test_config.py
 @pytest.mark.skipif(shutil.which("ninja") is None, reason="needs ninja")
 def test_an_update_generates_again(two_arms: Path) -> None:
     """Stands for an installation: a copy of the package, whose version changes."""

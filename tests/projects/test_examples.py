@@ -18,7 +18,7 @@ _NEEDS = {
     "ament_description": (needs_colcon, pytest.mark.slow),
     "cmake_only": (needs_cmake,),
     "hatch_robot": (),
-    "setuptools_robot": (),
+    "setuptools_robot": (pytest.mark.long,),  # its wheel: test_python_packages.py
     "python_quickstart": (),
 }
 _SAID = {

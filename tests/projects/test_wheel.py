@@ -123,7 +123,7 @@ assert "<svg" in card and "<table" in card and "at most 8 solutions" in card
 """
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.skipif(not shutil.which("c++"), reason="needs a C++ compiler")
 @pytest.mark.parametrize("installed", ["wheel"], indirect=True)
 def test_all_of_the_library_works_from_a_wheel(installed: Environment, tmp_path: Path) -> None:

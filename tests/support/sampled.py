@@ -27,12 +27,17 @@ def sampled(names: Iterable[Any], always: Collection[Any]) -> list[Any]:
     return [pytest.param(n, marks=() if n in always else pytest.mark.long) for n in names]
 
 
-def in_languages(names: Iterable[str], compiled: Collection[str]) -> list[Any]:
-    """Parameters of a test, a name and a language: all in Python; in C++, which takes seconds to compile,
-    the others than those `compiled` are marked `long`."""
+def in_languages(
+    names: Iterable[str], compiled: Collection[str], rare: Collection[str] = ()
+) -> list[Any]:
+    """Parameters of a test, a name and a language: all in Python, of which the `rare` are marked `long`; in
+    C++, which takes seconds to compile, the others than those `compiled` are."""
+    names = list(names)
+    strange = set(rare) - set(names)
+    assert not strange, f"no such cases: {strange}"
     cases = []
     for kind in sampled(names, compiled):
         (name,) = kind.values
-        cases.append(pytest.param(name, "python"))
+        cases.append(pytest.param(name, "python", marks=pytest.mark.long if name in rare else ()))
         cases.append(pytest.param(name, "cpp", marks=(*kind.marks, COMPILES)))
     return cases

@@ -51,7 +51,7 @@ def gap(a: Array, b: Array) -> Array:
 @pytest.mark.parametrize(
     ("q", "least"),
     [
-        (configurations(6000), 0.3),
+        pytest.param(configurations(6000), 0.3, marks=pytest.mark.long),
         (configurations(200, q3=0.01), 0.1),
         (configurations(200, q5=0.01), 0.0),
         (configurations(100, q3=1e-4, q5=1e-4), 0.0),
