@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -109,7 +110,8 @@ def elimination_lanes(arm: Arm, plan: Plan, entries: tuple[Array, ...]) -> tuple
 def _rows_of_poses(arm: Arm, plan: Plan, T: Array, held: Array) -> tuple[Index, Array, Flags]:
     """Pose indices (k,) in order, and at most `arm.most` rows (k, 6) for each of the poses T (N, 4, 4) with
     joints `held` (1 or N, c); for which (N,) there may be more."""
-    pose, values, unsure = six_joint_rows(_six_joints(arm, plan, held), plan, T, arm.policy)
+    policy = replace(arm.policy, arrived=arm.policy.arrived * min(1.0, arm.task.size / plan.length))
+    pose, values, unsure = six_joint_rows(_six_joints(arm, plan, held), plan, T, policy)
     for i in np.flatnonzero(np.bincount(pose, minlength=1) > arm.most):
         some = _regular_first(arm, values[pose == i], held[i % len(held)], T[i])
         before, after = pose < i, pose > i
