@@ -81,7 +81,7 @@ class LinearPair(Form):
     def lower(self, g: ExpressionGraph, sigma: Expr, tolerances: Tolerances) -> LoweredForm:
         """Cramer's rule with one division; by a rotation the constant sides are turned back, over its
         length squared."""
-        sign, power = self.rotation, 1
+        sign = self.rotation
         y = g.sub(g.mul(self.a1, self.c2), g.mul(self.a2, self.c1))
         if sign == 0:
             det = g.sub(g.mul(self.a1, self.b2), g.mul(self.b1, self.a2))
@@ -90,8 +90,7 @@ class LinearPair(Form):
             det = g.dot([self.a1, self.a2], [self.a1, self.a2])
             x = g.dot([self.a1, self.a2], [self.c1, self.c2])
             y = y if sign > 0 else g.neg(y)
-            power = 2
-        divisor = divisor_of(g, det, tolerances, power)
+        divisor = divisor_of(g, det, tolerances, 2 if sign else 1)
         if det.is_fixed:
             return LoweredForm((g.div(x, det), g.div(y, det)), divisor, None, 1)
         inverse = g.div(g.one, divisor.value)

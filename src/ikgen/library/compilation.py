@@ -39,7 +39,7 @@ class CompiledArm(Arm):
 
     def __init__(self, arm: Arm, compiled: ModuleType) -> None:
         super().__init__(arm._request, arm._outputs, arm._entry, arm._derived)
-        vars(self)["module"] = arm.module  # what both give is of its classes
+        self.module = arm.module  # what both give is of its classes
         self.compiled = compiled
 
     @property

@@ -19,11 +19,9 @@ def either(graph: ExpressionGraph, flags: Iterable[Expr]) -> Expr | None:
 
 
 class DoubleRoots:
-    """Conditions under which unknowns are nearly double roots; `definition`: what solved atoms stand for.
-    `asked`: those that square roots of exact geometry have to do with (ordered, without values)."""
+    """Conditions under which unknowns are nearly double roots. `definition`: what solved atoms are."""
 
     def __init__(self, graph: ExpressionGraph, definition: dict[int, Expr]) -> None:
-        self.asked: dict[Expr, None] = {}
         self._graph, self._definition = graph, definition
         self._own: list[Expr] = []
         self._of: dict[int, Expr] = {}
@@ -43,5 +41,4 @@ class DoubleRoots:
         """Condition that an unknown which a value follows from is; None where there is no such unknown."""
         before = dependencies([value], self._definition)
         flags = dict.fromkeys(self._of[node.id] for node in before if node.id in self._of)
-        self.asked |= flags
         return either(self._graph, flags)

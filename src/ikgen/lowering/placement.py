@@ -98,13 +98,12 @@ class Placement:
 
     @property
     def rough(self) -> Expr | None:
-        """Condition that an unknown solved so far has lost digits. With constants as the file rounds them
-        a continuum's place is taken by solutions that few digits tell apart, and two of them meet where
-        it would be; where branches of a step meet at a regular configuration, the next root is taken of
-        what has half the digits; of exact constants only where a square root was seen to follow from such
-        an unknown. None where nothing of this can be."""
-        own = (*self.singular, *self.folds)
-        return either(self.g, own if self.loses_digits else self.double_roots.asked)
+        """Condition that an unknown solved so far has lost digits, where the Program `loses_digits`. With
+        constants as the file rounds them a continuum's place is taken by solutions that few digits tell
+        apart, and two of them meet where it would be; where branches of a step meet at a regular
+        configuration, the next root is taken of what has half the digits. None where nothing of this can
+        be."""
+        return either(self.g, (*self.singular, *self.folds))
 
     def note_fold(self, under: Expr, size: float) -> None:
         """A square root was taken of `under`: of few digits where that is small beside `size`."""

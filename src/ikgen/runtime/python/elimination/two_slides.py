@@ -37,9 +37,7 @@ _QUARTIC_OFFSETS = np.array(
 )  # rad, of the nodes: one where no divisor is small
 _WELL_APART = 1e-3  # divisors above it need no other nodes
 _VANISHING = 1e-15  # value of a polynomial, lengths in the arm's, that is round-off
-_BLURRED_QUARTIC = (
-    1e-10  # value below which rounding moves roots too far to tell how many there are
-)
+_BLURRED_QUARTIC = 1e-10  # value below which rounding moves roots too far to tell how many
 _FOLDED_QUARTIC = 1e-5  # divisor at a root below which other solutions may have the same angle
 _LARGE = 100.0  # value of a polynomial, lengths in the arm's, in whose rounding roots are lost
 _QUARTIC_DEGREE = 4

@@ -180,9 +180,8 @@ def _step(arm: Arm, q: Array, T: Array, side: Array, before: _Stepped | None) ->
 def _still(slope: Array, still: Array, damping: float) -> Array:
     """By four steps of inverse iteration, from what it was, which keeps its sense."""
     inverse = normal_inverse(slope, damping)
-    inverse = (
-        inverse / np.trace(inverse, axis1=1, axis2=2)[:, None, None]
-    )  # its powers do not overflow
+    size = np.trace(inverse, axis1=1, axis2=2)[:, None, None]
+    inverse = inverse / size  # so that its powers do not overflow
     twice = inverse @ inverse
     return _unit((twice @ (twice @ still[:, :, None]))[:, :, 0])[0]
 
