@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import copy
 import importlib.util
+import pickle
 import shutil
 from pathlib import Path
 from typing import cast
@@ -14,6 +16,8 @@ from tests.support.small_robots import elbow_robot
 import ikgen
 from ikgen.errors import ArgumentError, MissingToolError
 from ikgen.library.compilation import CompiledArm, _compare
+from ikgen.verify.runners import cpp_toolchain
+from ikgen.verify.runners.cpp_toolchain import LIGHT
 
 ELBOW = Path(__file__).resolve().parents[2] / "examples/setuptools_robot/urdf/elbow.urdf"
 UR5E = Path(__file__).resolve().parents[2] / "urdf_fixtures/ur5e.urdf"
@@ -57,7 +61,10 @@ def test_limits_beyond_half_a_turn_are_compared_too(
 @pytest.mark.slow
 @pytest.mark.skipif(importlib.util.find_spec("nanobind") is None, reason="needs nanobind")
 @pytest.mark.skipif(not shutil.which("c++"), reason="needs a C++ compiler")
-def test_a_compiled_arm_does_what_the_arm_does(cache: Path) -> None:
+def test_a_compiled_arm_does_what_the_arm_does(
+    cache: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(cpp_toolchain, "FULL", LIGHT)  # rows are the same, in half of the time
     arm = ikgen.load(UR5E, verify=False)
     fast = ikgen.compile(arm)
     assert isinstance(fast, ikgen.Arm) and fast.joint_names == arm.joint_names
@@ -78,6 +85,9 @@ def test_a_compiled_arm_does_what_the_arm_does(cache: Path) -> None:
     assert fast.solve(poses[0] + 9.0).status == arm.solve(poses[0] + 9.0).status
     mine, theirs = (one.search(poses[0], prefer="dexterous") for one in (fast, arm))
     assert np.allclose(mine.q, theirs.q, atol=1e-9) and mine.status is theirs.status
+    for other in (pickle.loads(pickle.dumps(fast)), copy.copy(fast), copy.deepcopy(fast)):
+        assert isinstance(other, CompiledArm) and other.compiled is fast.compiled
+        assert (other.solve(poses[0]).q == fast.solve(poses[0]).q).all()
     along = arm.forward(np.linspace(q[0], q[0] + 0.3, 5))
     path, other = (one.follow(along, start=q[0]) for one in (fast, arm))
     assert np.allclose(path.q, other.q, atol=1e-9) and path.reached == other.reached == 5

@@ -42,6 +42,10 @@ class CompiledArm(Arm):
         self.module = arm.module  # what both give is of its classes
         self.compiled = compiled
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickles and copies carry the arm, whose binary the cache has; one that is gone is made again."""
+        return compile, (Arm(self._request, self._outputs, self._entry),)
+
     @property
     def _functions(self) -> ModuleType:
         return self.compiled
