@@ -24,6 +24,8 @@ from ikgen.cli.main import run
 from ikgen.derivation.read import read
 from ikgen.generation.emitted_checks import oracle_for
 from ikgen.records.request import Request
+from ikgen.verify.runners import cpp_toolchain
+from ikgen.verify.runners.cpp_toolchain import LIGHT
 from ikgen.verify.runners.python_module import PythonModule
 
 pytestmark = pytest.mark.usefixtures("solved_once")
@@ -161,13 +163,14 @@ def test_a_table_takes_them_too(tmp_path: Path) -> None:
     )
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.skipif(importlib.util.find_spec("nanobind") is None, reason="needs nanobind")
 @pytest.mark.skipif(not shutil.which("c++"), reason="needs a C++ compiler")
 def test_a_compiled_arm_does_what_the_arm_does(
     scara: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("IKGEN_CACHE_DIR", str(tmp_path / "cache"))
+    monkeypatch.setattr(cpp_toolchain, "FULL", LIGHT)
     relations = dict(text.partition("=")[::2] for text in OPTIONS[1::2])
     arm = ikgen.load(scara, couple=relations, verify=False)
     fast = ikgen.compile(arm)

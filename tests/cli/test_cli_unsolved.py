@@ -99,6 +99,7 @@ def test_how_much_is_tried_does_not_depend_on_the_time(
     assert remedies(caught.value.unsolved, lambda *_: None) == tried[:2]
 
 
+@pytest.mark.long
 def test_seven_joints_that_no_choice_solves(
     general: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -123,7 +123,7 @@ def test_a_failed_verification(called: Called, monkeypatch: pytest.MonkeyPatch) 
     emit = python_emitter.emit_derivation
 
     def wrong(derivation: Any) -> dict[str, str]:
-        return {name: text.replace("0.35", "0.36") for name, text in emit(derivation).items()}
+        return {name: text.replace("2.5", "2.4") for name, text in emit(derivation).items()}
 
     monkeypatch.setattr(python_emitter, "emit_derivation", wrong)
     code, found = called(

@@ -9,14 +9,14 @@ from ikgen.errors import IkgenError
 from ikgen.projects.config import load_config
 
 LINKS = "".join(f'<link name="{name}"/>' for name in "abcd")
-TURN = (
-    '<joint name="{0}{1}" type="continuous"><parent link="{0}"/><child link="{1}"/>'
-    '<origin xyz="{2} 0 0.1"/><axis xyz="{3}"/><limit lower="-6.28" upper="6.28"/></joint>'
+SLIDE = (
+    '<joint name="{0}{1}" type="prismatic"><parent link="{0}"/><child link="{1}"/>'
+    '<origin xyz="{2} 0 0.1"/><axis xyz="{3}"/><limit lower="-1" upper="1"/></joint>'
 )
 JOINTS = (
-    TURN.format("a", "b", "0", "0 0 1")
-    + TURN.format("b", "c", "0", "0 1 0")
-    + TURN.format("c", "d", "${(lambda: 0.4)()}", "0 1 0")
+    SLIDE.format("a", "b", "0", "0 0 1")
+    + SLIDE.format("b", "c", "0", "0 1 0")
+    + SLIDE.format("c", "d", "${(lambda: 0.4)()}", "1 0 0")
     + '<link name="t"/><joint name="dt" type="fixed"><parent link="d"/><child link="t"/>'
     '<origin xyz="0.3 0 0"/></joint>'
 )

@@ -199,6 +199,7 @@ def test_paths(both: Both) -> None:
     assert seen > 15
 
 
+@pytest.mark.long
 def test_paths_past_a_stretched_elbow(tmp_path: Path) -> None:
     """With a joint held, and more joints than freedoms: singular there and nowhere else."""
     both = in_both(lift_scara(tmp_path), tmp_path, "4")

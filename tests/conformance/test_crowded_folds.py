@@ -44,6 +44,7 @@ FOUR = (  # right angles and half turns as a file of a kit has them
 )
 
 
+@pytest.mark.long
 def test_a_row_beside_a_known_pair_takes_no_place(tmp_path: Path) -> None:
     axes, tip = ("0 0 1", "0 1 0", "0 1 0", "0 1 0", "1 0 0"), ("0.09193 -0.0016 0", "0 0 0")
     path = serial_urdf(tmp_path / "crowded.urdf", FIVE, axes=axes, tip=tip, limit=6.283185307179586)

@@ -79,7 +79,9 @@ def arm(name: str, folder: Path) -> tuple[Request, NDArray[np.float64]]:
     return Request(serial_urdf(folder / "rounded.urdf", ROUNDED, limit=LIMIT)), stretched()
 
 
-@pytest.mark.parametrize(("name", "language"), in_languages(["elbows", "slide", "rounded"], []))
+@pytest.mark.parametrize(
+    ("name", "language"), in_languages(["elbows", "slide", "rounded"], [], ["rounded"])
+)
 def test_none_is_without_a_row(name: str, language: str, tmp_path: Path) -> None:
     request, q = arm(name, tmp_path)
     derivation = derive(request)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from benchmarks.agreement import arm_of, runner_of
 from numpy.typing import NDArray
-from tests.support.sampled import PYTHON_OFTEN
+from tests.support.sampled import BOTH
 from tests.support.serial_urdf import serial_urdf
 
 from ikgen.derivation.derive import derive
@@ -48,7 +48,8 @@ def volume(
     return np.asarray(np.linalg.det(J[:, :3][:, :, [0, 1, 3]]))
 
 
-@PYTHON_OFTEN
+@pytest.mark.long
+@BOTH
 def test_both_sides_are_found_beside_a_fold_at_which_the_fallback_tells_nothing(
     language: str, tmp_path: Path
 ) -> None:

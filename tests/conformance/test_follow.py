@@ -68,6 +68,7 @@ def test_a_motion_through_the_wrist_singularity_comes_back(ur5e: ModuleType) -> 
         assert path.singular.sum() == 1 and path.singular[20]
 
 
+@pytest.mark.long
 def test_a_coarse_step_beside_a_singularity_stays_on_the_branch(ur5e: ModuleType) -> None:
     """Where rows of both branches are near where the Jacobian leads; in one step as in ten."""
     random = np.random.default_rng(0)

@@ -55,6 +55,7 @@ def test_joints_stopped_first_are_let_go_where_others_have_to_stop(tmp_path: Pat
         assert np.abs(rows - path.q).max() < 1e-6
 
 
+@pytest.mark.long
 def test_a_joint_on_its_limit_is_no_singularity(tmp_path: Path) -> None:
     """Along lines by which joints come to their limits and stay there: the others make good of it, at a
     right angle to where all joints would go, and where they cannot the limits are the reason."""

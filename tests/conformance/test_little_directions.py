@@ -116,6 +116,7 @@ def test_a_slide_that_nearly_goes_along_the_first_axis_is_found(
 
 
 @pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "compiles")
+@pytest.mark.long
 def test_undamped_steps_lead_where_two_directions_are_nearly_lost(tmp_path: Path) -> None:
     """The closed form's row is off by 0.04 rad along a direction that hardly moves the pose."""
     random = np.random.default_rng(51)

@@ -50,6 +50,7 @@ def on_limits(arm: ModuleType) -> Array:
     return np.clip(quarters, arm.LOWER, arm.UPPER)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("drawn", sampled([stretched, on_limits], [on_limits]))
 def test_they_are_found(both: Both, drawn: Callable[[ModuleType], Array]) -> None:
     arm = both.arm

@@ -37,6 +37,7 @@ def drawn(both: Both) -> np.ndarray:
     return rng.uniform(both.arm.LOWER, both.arm.UPPER, (6, both.arm.DOF))
 
 
+@pytest.mark.long
 def test_a_pose_lies_in_the_range_that_it_is_reached_from(both: Both) -> None:
     arm = both.arm
     for q in drawn(both):

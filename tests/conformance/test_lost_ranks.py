@@ -33,10 +33,8 @@ MEETING = [
 
 
 @pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "compiles")
-@pytest.mark.parametrize(
-    "rows",
-    [pytest.param(FLAT, marks=pytest.mark.long, id="flat"), pytest.param(MEETING, id="meeting")],
-)
+@pytest.mark.long
+@pytest.mark.parametrize("rows", [FLAT, MEETING], ids=["flat", "meeting"])
 def test_every_pose_has_a_row(rows: list[Row], tmp_path: Path) -> None:
     header = header_of(derive(Request(dh_file(tmp_path / "arm.toml", rows))).module, tmp_path)
     random = np.random.default_rng(2)

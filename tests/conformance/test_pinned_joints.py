@@ -21,7 +21,8 @@ pytestmark = [
 ]
 
 
-@pytest.mark.parametrize("upper", [pytest.param(0.3, marks=pytest.mark.long), nextafter(0.3, 1.0)])
+@pytest.mark.long
+@pytest.mark.parametrize("upper", [0.3, nextafter(0.3, 1.0)])
 def test_each_row_is_an_interval_without_width(upper: float, tmp_path: Path) -> None:
     """Once, in both languages, and `search` has it."""
     limits = {"shoulder_roll": (0.3, upper)}

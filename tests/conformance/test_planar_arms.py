@@ -89,6 +89,7 @@ IDLE: tuple[Joint, ...] = (
 """The last axis goes through its own frame, whose position it does not move."""
 
 
+@pytest.mark.long
 def test_a_joint_that_leaves_the_position_makes_no_row_singular(tmp_path: Path) -> None:
     path = tmp_path / "idle.urdf"
     path.write_text(serial_urdf("idle", IDLE))

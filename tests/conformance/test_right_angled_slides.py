@@ -57,6 +57,7 @@ def assert_answered(arm: ModuleType, header: CppHeader, poses: NDArray[np.float6
         assert off[there].max() < 1e-8
 
 
+@pytest.mark.long
 def test_rows_of_roots_that_are_taken_outside_are_right(tmp_path: Path) -> None:
     axes = ("0 0 1", "1 0 0", "", "-1 0 0", "0 0 1", "1 0 0")
     path = serial_urdf(

@@ -62,6 +62,7 @@ def torso_arm() -> str:
     return f'<robot name="torso_arm">\n{text}</robot>\n'
 
 
+@pytest.mark.long
 def test_rows_are_of_the_intervals_that_they_are_the_best_of(tmp_path: Path) -> None:
     path = tmp_path / "torso_arm.urdf"
     path.write_text(torso_arm())

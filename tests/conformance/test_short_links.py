@@ -41,6 +41,7 @@ def snake() -> str:
     return f'<robot name="snake">{text}</robot>'
 
 
+@pytest.mark.long
 def test_poses_at_which_two_short_links_are_in_line_have_rows(tmp_path: Path) -> None:
     """What the file's angles are off moves the tip by far more than is small beside the links."""
     path = tmp_path / "snake.urdf"

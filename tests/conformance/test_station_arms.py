@@ -35,6 +35,7 @@ def intervals(both: Both, q: tuple[float, ...]) -> tuple[Array, Array]:
     return np.array(own), both.run(0, np.zeros(both.arm.DOF), pose[None])[1].reshape(-1, 3)
 
 
+@pytest.mark.long
 def test_a_curve_without_a_direction_is_given_up(tmp_path: Path) -> None:
     """Beside it an interval ends where halving finds its end."""
     both = station_arm(STATION_INSPECTOR, "pitch_2", tmp_path)

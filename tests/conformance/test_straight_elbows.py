@@ -27,6 +27,7 @@ ORIGINS = (
 AXES = ("0 0 1", "0 0 1", "0 0 1", "0 0 1", "0 0 -1", "0 0 1")
 
 
+@pytest.mark.long
 @pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "compiles")
 def test_a_straight_elbow_is_reached_next_to_a_straight_wrist(tmp_path: Path) -> None:
     path = serial_urdf(tmp_path / "straight.urdf", ORIGINS, axes=AXES)

@@ -11,7 +11,6 @@ import pytest
 from benchmarks.drawn import revolute, smallest_singular
 from benchmarks.solution_search import apart
 from tests.derivation.test_slide_tables import table
-from tests.support.sampled import sampled
 from tests.support.solving import NO_COMPILER, import_text
 
 from ikgen.derivation.derive import derive
@@ -81,7 +80,8 @@ def turns(axis: int, count: int) -> np.ndarray:
 
 
 @pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER)
-@pytest.mark.parametrize("kinds", sampled(["RRRRR", "RRPRR"], ["RRPRR"]))
+@pytest.mark.long
+@pytest.mark.parametrize("kinds", ["RRRRR", "RRPRR"])
 def test_the_header_has_the_same_rows(kinds: str, tmp_path: Path) -> None:
     module = solved(kinds, tmp_path)
     for suffix, text in (("py", emit_module(module)), ("hpp", emit_header(module))):

@@ -90,6 +90,7 @@ def test_zarr_is_asked_for_where_it_lacks(monkeypatch: pytest.MonkeyPatch) -> No
 COMMAND = ["reach", str(TABLE), "--directions", "2", "--workers", "1", "-q"]
 
 
+@pytest.mark.long
 def test_the_command_writes_both_files(tmp_path: Path) -> None:
     assert run([*COMMAND, "--cells", "6", "-o", str(tmp_path)]) == 0
     assert sorted(p.suffix for p in tmp_path.iterdir()) == [".html", ".json", ".npz"]

@@ -118,6 +118,7 @@ def test_robot_is_solved(name: str, tmp_path: Path) -> None:
     assert count.max() >= max(EXPECTED[name]["solutions"])
 
 
+@pytest.mark.long
 def test_elimination_passes_every_check_in_both_languages(tmp_path: Path) -> None:
     languages = ("python",) if NO_COMPILER else ("python", "cpp")
     made = generate(

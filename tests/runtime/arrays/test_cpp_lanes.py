@@ -201,6 +201,7 @@ def test_lanes_find_what_one_by_one_finds(robot: str, tmp_path: Path) -> None:
     assert sum(rough > 0 for _, rough in found) < 0.2 * len(q)
 
 
+@pytest.mark.long
 def test_a_slide_and_fewer_joints_than_equations(tmp_path: Path) -> None:
     q = np.random.default_rng(4).uniform(-1, 1, (60, 5))
     found = answers(rounded(SLIDE), q, tmp_path, "-march=native")

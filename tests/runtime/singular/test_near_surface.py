@@ -40,6 +40,7 @@ def apart(a: Array, b: Array) -> Array:
     return np.asarray(np.abs(np.remainder(a - b + np.pi, 2 * np.pi) - np.pi).max(axis=-1))
 
 
+@pytest.mark.long
 @needs_compiler
 def test_headers_find_them(made: Emitted) -> None:
     found = soak(made, 0, 300, flags=("-O1",))

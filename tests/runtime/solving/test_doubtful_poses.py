@@ -75,6 +75,7 @@ def test_a_batch_gives_what_each_pose_gives(arm: ModuleType, seeded: bool, limit
         assert apart(alone.q, q[i]).min() < 1e-4
 
 
+@pytest.mark.long
 def test_behind_a_direction_that_rounding_turns_rows_are_found(tmp_path: Path) -> None:
     q = beside_the_wrist(300)
     module = emitted(to_dh(three_parallel()), tmp_path)

@@ -22,6 +22,7 @@ from ikgen.processes.outside_program import (
 )
 
 __all__ = [
+    "FULL",
     "LEAN",
     "LIGHT",
     "Compilation",
@@ -34,6 +35,9 @@ __all__ = [
 
 LIGHT = ("-O1",)
 """Options of a light optimisation."""
+
+FULL = ("-O3",)
+"""Options of all of it, for what is compiled once and called often."""
 
 _ROOM = ("--param", "ggc-min-heapsize=600000")
 """kB that GCC fills before it collects what it needs no more, which takes a tenth of its time (420 MB in
@@ -144,7 +148,7 @@ def compile_extension(
     """Compile C++17 files into a module of the running Python, with full optimisation. Raises as
     `compile_program`."""
     options = [f"-D{one}" for one in ("NDEBUG", *defines)]
-    options += ["-O3", "-shared", "-fPIC", "-fvisibility=hidden", "-fno-strict-aliasing"]
+    options += [*FULL, "-shared", "-fPIC", "-fvisibility=hidden", "-fno-strict-aliasing"]
     if sys.platform == "darwin":
         options += ["-undefined", "dynamic_lookup"]
     places = [*include, Path(sysconfig.get_path("include"))]
