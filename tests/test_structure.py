@@ -100,6 +100,7 @@ def test_comments_of_constants_stand_alone() -> None:
 
 def test_docstrings_can_be_read_alone() -> None:
     starts = (
+        "Of ",
         "Those ",
         "That of ",
         "The same of ",

@@ -1421,7 +1421,7 @@ def _bends(values: Array, changes: _Index) -> _Flags:
 
 
 def _solved(parts: _Parts, at: _Reduced, share: float) -> _Parts:
-    """Of samples at a share of the way those at solutions, as parts without length."""
+    """The samples at a share of the way that are at solutions, as parts without length."""
     place = parts.place + share * parts.width
     out: _Parts = _some_of(_Parts(at, at, parts.owner, place, 0.0 * place), np.abs(at.left) < _SOLVED)
     return out
@@ -1481,7 +1481,7 @@ def _root_share(values: Array, share: Array) -> Array:
 
 
 def _kept(arm: _Arm, parts: _Parts) -> tuple[_Index, Array]:
-    """Of each part the end where less is left, in order."""
+    """The end of each part where less is left, in order."""
     ends = _Reduced(*map(np.stack, zip(parts.a, parts.b)))
     least = np.abs(ends.left).argmin(axis=0)
     left, q = (x[least, np.arange(len(least))] for x in (ends.left, ends.q))
@@ -1621,7 +1621,7 @@ def _found_around(
 
 
 def _first_of(branch: _Index, some: _Index) -> _Index:
-    """Of some starts, in order, the first of each `branch` (k,)."""
+    """The first start of each `branch` (k,) among some, in order."""
     return np.sort(some[np.unique(branch[some], return_index=True)[1]])
 
 
@@ -1757,7 +1757,7 @@ def _seeded_rows(arm: _Arm, asked: _Asked) -> list[list[_Found]]:
 
 
 def _led_to(arm: _Arm, asked: _Asked, start: Array) -> list[list[_Found]]:
-    """Of each pose what Newton steps from its start (n, dof) lead to."""
+    """What Newton steps from the start (n, dof) of each pose lead to."""
     if not len(start):
         return []
     starts = _given(arm, asked, start, np.arange(len(start)))
@@ -2250,14 +2250,14 @@ def _begun(
     steps: int,
     starts: int,
 ) -> Array:
-    """Of each pose where the steps of those of its starts are that come nearest to it."""
+    """Where, of each pose, the steps are of those of its starts that come nearest to it."""
     q = np.concatenate([_projection_starts(arm, row, bounds, starts) for row in start])
     ends = _descend_to(arm, np.repeat(T, len(q) // len(T), axis=0), q, bounds, enough, steps)
     return _least_of(len(T), *ends, _FOLLOWED)
 
 
 def _least_of(poses: int, q: Array, cost: Array, count: int) -> Array:
-    """Of as many rows q (n, dof) of each of some poses the ones with the least cost (n,), in that order."""
+    """The rows q (n, dof) with the least cost (n,), in that order, of as many of each of some poses."""
     best = np.argsort(cost.reshape(poses, -1), axis=1, kind="stable")[:, :count]
     rows = np.take_along_axis(q.reshape(poses, -1, q.shape[1]), best[:, :, None], axis=1)
     return rows.reshape(-1, q.shape[1])
@@ -2303,7 +2303,7 @@ def _off_by(task: _EntriesTask, pose: Array, T: Array) -> Array:
 
 
 def _chord_weight(task: _EntriesTask) -> Array:
-    """Of each entry."""
+    """Weight of each entry."""
     turn = sqrt(0.5) if len(task.unit) == 3 else 1.0
     return np.array([1.0 / task.size if c == 3 else turn for _, c in task.entries])
 
@@ -2480,7 +2480,7 @@ def _inside(arm: _Arm, asked: _Asked, i: int, found: list[_Found], limits: bool)
 
 
 def _led_to_or_along(arm: _Arm, asked: _Asked, rows: Array) -> list[list[_Found]]:
-    """Of each pose what Newton steps from its row lead to, or else the solutions on a curve through it that
+    """What Newton steps from each pose's row lead to, or else the solutions on a curve through it that
     is a continuum of the arm's but for a little that is left, or what undamped steps lead to."""
     led = _led_to(arm, asked, rows)
     some = np.flatnonzero([not one for one in led])

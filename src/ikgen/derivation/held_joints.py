@@ -33,7 +33,7 @@ DIVIDING = 1e-4
 close as that, and what follows divides by it, so that rows are off by round-off over its square."""
 
 _WIDE = 0.9
-"""Of the widest range of the held joints: from there on it is much the same."""
+"""Share of the widest range of the held joints: from there on it is much the same."""
 
 _POOR = 0.3
 """Choices of a class that are conditioned worse than its best by this factor, or whose joints reach as much

@@ -17,7 +17,7 @@ _MOST_JOINTS = 3
 """An arm with more has a wrist, whose last joint is to turn the tip where it is."""
 
 _ON_AXIS = 1e-6
-"""Of the arm's length, by the rounding of files."""
+"""How far off an axis, of the arm's length, a tip is on it: the rounding of files."""
 
 
 def tip_on_axis(dh: DHChain, task: Task) -> str:

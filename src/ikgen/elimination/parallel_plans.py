@@ -37,8 +37,8 @@ __all__ = [
 ]
 
 _MOST_DEVIATION = 2e-5
-"""Of a kind's links from the chain's (rad, lengths over the arm's): three right angles of four digits
-behind the point are within it. Candidates are as far off the pose, and take Newton steps."""
+"""How far a kind's links may be from the chain's (rad, lengths over the arm's): three right angles of four
+digits behind the point are within it. Candidates are as far off the pose, and take Newton steps."""
 
 _EXACT = 1e-8
 

@@ -279,7 +279,7 @@ def _configurations(frames: Array, turning: Turning, count: int, rng: np.random.
 
 
 def half_hard(drawn: Array, size: Array, count: int) -> Array:
-    """Of configurations (n, 6) with these smallest singular values (n,), `count` regular ones: half of them
+    """Regular ones, `count` of configurations (n, 6) with these smallest singular values (n,): half of them
     the first, half the nearest to singular ones."""
     regular = np.flatnonzero(size > _REGULAR)
     hard = regular[np.argsort(size[regular])][: count // 2]

@@ -30,8 +30,8 @@ _FIRST = 0.1  # rad, an angle that no right angle shares
 _DEGREE = 8
 _NOISE = 11.0  # times the norm of what a polynomial of degree 8 has not: as in the emitted code
 _ROUNDING = 5e-13
-"""Of the coefficients, at least: rounding alone reaches it hardly ever. What it really is, is another on
-every processor, and choices would be with it."""
+"""Share of the coefficients, at least: rounding alone reaches it hardly ever. What it really is, is another
+on every processor, and choices would be with it."""
 
 
 def root_shifts(frames: Array, poses: Array, q: Array) -> Array:

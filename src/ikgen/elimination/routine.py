@@ -56,7 +56,7 @@ def _by_pose(rows: Array, pose: NDArray[np.intp], count: int) -> list[Array]:
 def initial_residuals(
     frames: Array, plans: Sequence[Plan], poses: Array
 ) -> list[tuple[list[Array], Array]]:
-    """Of each plan the first elimination's solutions for poses (N, 4, 4), lengths over the plan's, and the
+    """The first elimination's solutions by each plan for poses (N, 4, 4), lengths over the plan's, and the
     pose errors (m,) of those candidates that became solutions, before Newton's method: how well conditioned
     the elimination is. The plans are of one arm: all their candidates are refined together."""
     policy, plan = runtime_policy(SolvePolicy()), plans[0]

@@ -46,7 +46,7 @@ _WORST = 10.0
 which counts where links are short beside the pose's lengths."""
 
 _OUTSIDE = 0.5
-"""Of its natural size, how far outside its domain what is under a square root may be at most: the branches
+"""How far outside its domain, of its natural size, what is under a square root may be at most: the branches
 of one that is farther outside are near no solution."""
 
 _BESIDE = 100.0

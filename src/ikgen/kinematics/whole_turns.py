@@ -109,8 +109,8 @@ def _cause(dh: DHChain, joint: int, rows: tuple[DHRow, ...]) -> tuple[str, str] 
 
 
 def _odd_ratio(dh: DHChain, joint: int, rows: tuple[DHRow, ...]) -> tuple[str, str]:
-    """Of rows that turn in no ratio of whole numbers: those of which that is true by themselves, else
-    all."""
+    """What is told of rows that turn in no ratio of whole numbers, and what would do: it names those of
+    which that is true by themselves, else all."""
     own = dh.joints[joint].name
     slowest = min(rows, key=lambda row: abs(row.scale))
     ratios = {row.name: abs(row.scale / slowest.scale) for row in rows}

@@ -213,12 +213,12 @@ class Arm:
         return self.module
 
     def _solutions(self, found: Any) -> Solutions:
-        """Of the module's class."""
+        """What was found, of the module's class."""
         rows: Solutions = found
         return rows
 
     def _path(self, found: Any) -> JointPath:
-        """Of the module's class."""
+        """What was found, of the module's class."""
         path: JointPath = found
         return path
 

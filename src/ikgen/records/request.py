@@ -143,8 +143,8 @@ class Request:
 
     @property
     def field_without_use(self) -> str:
-        """Of a DH table, one chain without arguments, the first field that it has no use for and that says
-        something; "" for none."""
+        """The first field that says something and that a DH table, one chain without arguments, has no use
+        for; "" for none."""
         fields = ("base", "tip", "args", "package_paths")
         return next((one for one in fields if getattr(self, one)), "")
 

@@ -26,7 +26,7 @@ from ikgen.report.document import (
 __all__ = ["to_html"]
 
 _SCROLLS = 'tabindex="0" role="group" aria-label="formulas"'
-"""Of what may be wider than a phone, so that keys can scroll it too."""
+"""Attributes of what may be wider than a phone, so that keys can scroll it too."""
 
 
 def to_html(title: str, subtitle: str, blocks: Sequence[Block]) -> str:

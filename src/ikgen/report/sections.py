@@ -119,9 +119,9 @@ SOLVED: tuple[Callable[[SolvedPage], list[Block]], ...] = (
     _card, _held, _example, _robot, _forward, _solution, _graph, _sets, _tree, _proof,
     _verification,
 )  # fmt: skip
-"""Of a solved arm; a section that does not apply is empty."""
+"""Sections on a solved arm; one that does not apply is empty."""
 
 UNSOLVED: tuple[Callable[[UnsolvedPage], list[Block]], ...] = (
     _unsolved_card, _robot, _forward, _inverse, _graph, _left, _tree,
 )  # fmt: skip
-"""Of an arm without a closed form."""
+"""Sections on an arm without a closed form."""

@@ -83,7 +83,7 @@ class Recipe:
         return next(iter(found), None)
 
     def mean_and_half(self, index: int) -> tuple[sympy.Expr, sympy.Expr]:
-        """Of a component (0: cosine or length, 1: sine), over the divisor: the part that the branches
+        """The part of a component (0: cosine or length, 1: sine), over the divisor, that the branches
         share, and the one that changes sign."""
         above = []
         for one in self.fractions:

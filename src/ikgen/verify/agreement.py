@@ -16,8 +16,8 @@ TOLERANCE = 1e-6
 """rad or m: beside a singular configuration the last digits of a pose move a row that far."""
 
 FARTHEST_SLIDE = 100.0
-"""Of the arm's length: rows with slides farther out are not compared. They are where rounding keeps slides
-from being parallel, and whether steps of less than a metre come there hangs on where they begin."""
+"""Times the arm's length: rows with slides farther out are not compared. They are where rounding keeps
+slides from being parallel, and whether steps of less than a metre come there hangs on where they begin."""
 
 
 def disagreements(

@@ -57,7 +57,7 @@ def check_exhaustive(
 
 
 def _distinct(arm: ArmUnderTest, q: Array) -> Array:
-    """Of q (N, dof) those that differ from all that were kept before."""
+    """The rows of q (N, dof) that differ from all that were kept before."""
     known = q[:0]
     while len(q):
         known, q = np.vstack([known, q[:1]]), q[arm.distance(q, q[0]) > FOUND_TOLERANCE]

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 __all__ = ["ReachPanel"]
 
 _CELLS, _DIRECTIONS = 16, 12
-"""Of the map that is computed where none is given: it takes about a second."""
+"""Size of the map that is computed where none is given: it takes about a second."""
 
 
 class ReachPanel:

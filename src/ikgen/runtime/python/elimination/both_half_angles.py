@@ -154,8 +154,8 @@ def _pairs(rows: Array, sigma: Array, pose: Index, t3: Array) -> tuple[Index, Ar
 
 
 def _shift(v: Complex, angle: int) -> tuple[Complex, Complex]:
-    """Of null vectors (..., 16) the parts of the powers -3/2, -1/2 and 1/2 of `exp(i theta)`, theta_4 or
-    (`angle` 1) theta_5, and those of the powers -1/2, 1/2 and 3/2: exp(i theta) times as much."""
+    """The parts of null vectors (..., 16) with the powers -3/2, -1/2 and 1/2 of `exp(i theta)`, theta_4 or
+    (`angle` 1) theta_5, and those with the powers -1/2, 1/2 and 3/2: exp(i theta) times as much."""
     w = np.moveaxis(v.reshape(*v.shape[:-1], 4, 4), angle - 2, 0)
     one, three = w[0] + 1j * w[1], w[2] + 1j * w[3]
     back, far = w[0] - 1j * w[1], w[2] - 1j * w[3]

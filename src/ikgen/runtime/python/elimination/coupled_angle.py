@@ -199,7 +199,7 @@ def _way(roots: Complex, place: Array | float) -> Array:
 
 
 def _at_seam(way: Array, off: Array) -> Flags:
-    """Of which poses (N,) roots `way` (N, n) from a crowded angle, with imaginary parts `off`, may be of
+    """The poses (N,) whose roots `way` (N, n) from a crowded angle, with imaginary parts `off`, may be of
     either polynomial."""
     seam = (np.abs(way - 0.9 * _NEAR) < _SEAM) & (np.abs(off) < _REAL)
     return np.asarray(seam.any(axis=1))

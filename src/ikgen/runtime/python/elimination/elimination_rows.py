@@ -73,8 +73,8 @@ def _regular_first(arm: Arm, angles: Array, held: Array, T: Array) -> Array:
 
 
 def elimination_lanes(arm: Arm, plan: Plan, entries: tuple[Array, ...]) -> tuple[Array, ...]:
-    """Of many poses the cosine and sine of every moving joint's angle, and the lengths of slides (most, N),
-    and which there are; those behind the last are NaN where it can't tell whether there are more.
+    """Cosine and sine of every moving joint's angle, and lengths of slides (most, N), for many poses, and
+    which there are; those behind the last are NaN where it can't tell whether there are more.
 
     entries: the pose's first three rows, then cosines, sines and distances of held joints.
     """

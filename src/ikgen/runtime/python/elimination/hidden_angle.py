@@ -132,8 +132,8 @@ def angles_off(t: Array | NDArray[np.complex128], about: Array) -> tuple[Array, 
 
 
 def all_clear(angle: Array, off: Array, doubtful: float | Array = DOUBTFUL) -> Flags:
-    """Of which rows (N,) each root (N, n) of these real and imaginary parts is clearly real or clearly
-    complex."""
+    """The rows (N,) of which each root (N, n), of these real and imaginary parts, is clearly real or
+    clearly complex."""
     clear = (off < doubtful).sum(axis=1) == (off < REAL).sum(axis=1)
     apart = (off < _FOURFOLD) & (off >= doubtful)
     some = np.nonzero(clear & apart.any(axis=1))[0]

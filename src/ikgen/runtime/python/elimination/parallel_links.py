@@ -46,8 +46,8 @@ class ParallelLinks(NamedTuple):
 
 
 def parallel_links(C: Sequence[Array]) -> Array:
-    """Of the links C[0], C[1], C[2] (1 or N, 4, 4) from axis 1 to axis 4 of a loop what `links_of` tells:
-    (m, 10).
+    """What `links_of` tells (m, 10) of the links C[0], C[1], C[2] (1 or N, 4, 4) from axis 1 to axis 4 of a
+    loop.
 
     Of axes 2 and 3, and where others are parallel to them, the frames' z axes and origins are as good as
     any.

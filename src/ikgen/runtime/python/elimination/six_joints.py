@@ -54,8 +54,8 @@ def with_tool_joint(F: Array, axis: int) -> Array:
 def six_joints(
     F: Array, length: float, motions: tuple[Motion, ...], held: Array | None = None
 ) -> SixJoints:
-    """Of constant transforms F (n + 1, 4, 4) and the motions between them, of the joints 0 to 5 and of held
-    ones, numbered from 6 on, at the values `held` (N, h) in rad or m."""
+    """Six joints from constant transforms F (n + 1, 4, 4) and the motions between them, of joints 0 to 5
+    and of held ones, numbered from 6 on, at the values `held` (N, h) in rad or m."""
     frames, chain = _scaled(F.tobytes(), length, motions)
     values = np.zeros((1, 0)) if held is None else held.copy()
     merged = [frames[0]]

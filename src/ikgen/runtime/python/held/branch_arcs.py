@@ -47,7 +47,7 @@ class Points:
         return np.asarray(self.flow[:, -1])
 
     def where(self, these: Flags, others: Points) -> Points:
-        """Of these curves, and of the others the other points."""
+        """Points of these curves, and the other points of the others."""
         out = []
         for field in fields(self):
             one, other = getattr(self, field.name), getattr(others, field.name)

@@ -103,8 +103,8 @@ def _followed(tracks: Tracks, before: Index, at: int, row: int, to: int) -> tupl
 
 
 def _met(arm: Arm, tracks: Tracks, before: Index, inside: tuple[int, int], to: int) -> int:
-    """Of the rows that end beside a row (index, row) towards sample `to` the nearest, of a rounded arm of
-    all: it may be found farther; -1 without one."""
+    """The nearest of the rows that end beside a row (index, row) towards sample `to`, or of all rows of a
+    rounded arm, where it may be found farther; -1 without one."""
     at, row = inside
     rows, links = tracks.rows, tracks.links[at] if to > at else before[to]
     gap = np.abs(differences(arm, rows.q[at, row], rows.q[at])).max(axis=1)

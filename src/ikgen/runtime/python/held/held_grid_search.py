@@ -92,7 +92,7 @@ def _lowest(arm: Arm, rows: Array, costs: Array, away: Array, near: float) -> tu
 
 
 def _distinct(arm: Arm, rows: Array, order: Index) -> list[int]:
-    """Of rows (n, dof) in an order those that are not alike one before them."""
+    """The rows (n, dof), in an order, that are not alike one before them."""
     out: list[int] = []
     for i in order.tolist():
         gaps = np.abs(differences(arm, rows[out], rows[i]))

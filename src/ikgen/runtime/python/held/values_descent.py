@@ -66,7 +66,7 @@ def _turned(count: int, turns: Index) -> Array:
 
 
 def _ways(count: int) -> Array:
-    """Of each value there and back, then of each two of them, in steps (s, count)."""
+    """Steps (s, count) of each value there and back, then of each two of them."""
     one = np.eye(count)
     first, second = np.triu_indices(count, 1)
     return np.concatenate([one, -one, one[first] + one[second]])

@@ -100,7 +100,8 @@ def _linearized(arm: Arm, q: Array, T: Array) -> tuple[Array, Array]:
 
 
 def _left_inverse(V: Array) -> tuple[Array, Array]:
-    """Of V (k, m, n): (k, n, m); and how far its columns are from the span of the others at least (k,)."""
+    """The left inverse (k, n, m) of V (k, m, n); how far its columns are from the span of the others at
+    least (k,)."""
     if V.shape[1] == V.shape[2]:
         try:
             inverse: Array = np.asarray(np.linalg.inv(V))

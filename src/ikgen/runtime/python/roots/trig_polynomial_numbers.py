@@ -19,7 +19,7 @@ __all__ = [
 
 ROUND_OFF = 1e-14
 STRIDE = 1.5
-"""Of the fastest term in radians: length of the intervals that are looked at first."""
+"""Length of the intervals that are looked at first, in radians of the fastest term."""
 
 LEAST = 3e-5
 """The same: half length of intervals that are not halved any more; three roots that meet are told apart

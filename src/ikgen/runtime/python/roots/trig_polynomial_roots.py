@@ -125,7 +125,7 @@ def _simple_intervals(
 def _told(
     sums: _Sums, rows: Index, low: Array, high: Array, one_way: Flags, touch: float
 ) -> tuple[list[tuple[Index, Array, Array]], tuple[Index, Array]]:
-    """Of intervals on which the polynomial goes one way, or bends one way: parts at whose ends it has
+    """Parts of intervals on which the polynomial goes one way, or bends one way, at whose ends it has
     unlike signs; and extrema inside that touch zero."""
     before, after = (sums.values(rows, x)[0] >= 0.0 for x in (low, high))
     unlike = before != after

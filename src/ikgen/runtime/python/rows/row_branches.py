@@ -41,7 +41,7 @@ def _inner(a: Array, b: Array) -> Array:
 
 
 def _side_names(arm: Arm, q: Array) -> tuple[str, ...]:
-    """Of six axes, the first at right angles to the second, which is parallel to the third.
+    """Branch names of six axes, the first at right angles to the second, which is parallel to the third.
 
     Seen from the first axis towards the wrist (where the last two axes meet), the second one points to the
     right or to the left; the elbow is above or below the line from the shoulder to the point that the

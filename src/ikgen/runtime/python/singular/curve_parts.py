@@ -121,7 +121,7 @@ def _bends(values: Array, changes: Index) -> Flags:
 
 
 def _solved(parts: Parts, at: Reduced, share: float) -> Parts:
-    """Of samples at a share of the way those at solutions, as parts without length."""
+    """The samples at a share of the way that are at solutions, as parts without length."""
     place = parts.place + share * parts.width
     out: Parts = some_of(Parts(at, at, parts.owner, place, 0.0 * place), np.abs(at.left) < SOLVED)
     return out
@@ -184,7 +184,7 @@ def _root_share(values: Array, share: Array) -> Array:
 
 
 def _kept(arm: Arm, parts: Parts) -> tuple[Index, Array]:
-    """Of each part the end where less is left, in order."""
+    """The end of each part where less is left, in order."""
     ends = Reduced(*map(np.stack, zip(parts.a, parts.b)))
     least = np.abs(ends.left).argmin(axis=0)
     left, q = (x[least, np.arange(len(least))] for x in (ends.left, ends.q))

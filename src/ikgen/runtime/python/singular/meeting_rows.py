@@ -165,7 +165,7 @@ def _found_around(
 
 
 def _first_of(branch: Index, some: Index) -> Index:
-    """Of some starts, in order, the first of each `branch` (k,)."""
+    """The first start of each `branch` (k,) among some, in order."""
     return np.sort(some[np.unique(branch[some], return_index=True)[1]])
 
 

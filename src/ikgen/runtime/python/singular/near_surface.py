@@ -151,7 +151,7 @@ def _descended(arm: Arm, q: Array, T: Array) -> tuple[Array, Array]:
 
 
 def _unlike(arm: Arm, q: Array, pose: Index) -> Index:
-    """Of rows q (k, dof) those that are like no earlier one of their pose (k,)."""
+    """The rows q (k, dof) that are like no earlier one of their pose (k,)."""
     kept: list[int] = []
     for k, row in enumerate(q):
         others = [i for i in kept if pose[i] == pose[k]]

@@ -68,7 +68,7 @@ def seeded_rows(arm: Arm, asked: Asked) -> list[list[Found]]:
 
 
 def led_to(arm: Arm, asked: Asked, start: Array) -> list[list[Found]]:
-    """Of each pose what Newton steps from its start (n, dof) lead to."""
+    """What Newton steps from the start (n, dof) of each pose lead to."""
     if not len(start):
         return []
     starts = _given(arm, asked, start, np.arange(len(start)))

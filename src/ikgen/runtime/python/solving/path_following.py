@@ -230,7 +230,7 @@ class _Walk:
             del stopped[freed]
 
     def _pulled_off(self, q: Array, pose: Array, stopped: list[int]) -> int | None:
-        """Of joints at their limits the one by whose motion off it the error shrinks most, if one is."""
+        """The joint at its limit by whose motion off it the error shrinks most, if there is one."""
         arm = self.arm
         here, J = tip_and_jacobian(arm.chain, q[None])
         pull = arm.task.error(here, pose[None])[0] @ arm.task.rows(here, J)[0]

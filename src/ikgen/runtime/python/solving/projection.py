@@ -70,14 +70,14 @@ def _begun(
     steps: int,
     starts: int,
 ) -> Array:
-    """Of each pose where the steps of those of its starts are that come nearest to it."""
+    """Where, of each pose, the steps are of those of its starts that come nearest to it."""
     q = np.concatenate([_starts(arm, row, bounds, starts) for row in start])
     ends = _descend_to(arm, np.repeat(T, len(q) // len(T), axis=0), q, bounds, enough, steps)
     return _least_of(len(T), *ends, _FOLLOWED)
 
 
 def _least_of(poses: int, q: Array, cost: Array, count: int) -> Array:
-    """Of as many rows q (n, dof) of each of some poses the ones with the least cost (n,), in that order."""
+    """The rows q (n, dof) with the least cost (n,), in that order, of as many of each of some poses."""
     best = np.argsort(cost.reshape(poses, -1), axis=1, kind="stable")[:, :count]
     rows = np.take_along_axis(q.reshape(poses, -1, q.shape[1]), best[:, :, None], axis=1)
     return rows.reshape(-1, q.shape[1])
@@ -123,7 +123,7 @@ def off_by(task: Task, pose: Array, T: Array) -> Array:
 
 
 def _chord_weight(task: Task) -> Array:
-    """Of each entry: a turn by x moves the nine of a rotation by sqrt(8) sin(x / 2)."""
+    """Weight of each entry: a turn by x moves the nine of a rotation by sqrt(8) sin(x / 2)."""
     turn = sqrt(0.5) if len(task.unit) == 3 else 1.0
     return np.array([1.0 / task.size if c == 3 else turn for _, c in task.entries])
 

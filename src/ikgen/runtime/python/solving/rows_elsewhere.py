@@ -106,7 +106,7 @@ def _inside(arm: Arm, asked: Asked, i: int, found: list[Found], limits: bool) ->
 
 
 def _led_to_or_along(arm: Arm, asked: Asked, rows: Array) -> list[list[Found]]:
-    """Of each pose what Newton steps from its row lead to, or else the solutions on a curve through it that
+    """What Newton steps from each pose's row lead to, or else the solutions on a curve through it that
     is a continuum of the arm's but for a little that is left, or what undamped steps lead to."""
     led = led_to(arm, asked, rows)
     some = np.flatnonzero([not one for one in led])
