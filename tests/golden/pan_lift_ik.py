@@ -1692,14 +1692,15 @@ def _untold(arm: _Arm, T: Array, a: Array, b: Array) -> _Flags:
     """Which singular rows a (k, dof) towards aims T (k, ...) nothing tells from others nearby, b (k,
     dof)."""
     gaps = _differences(arm, a, b)
-    near = np.flatnonzero(np.abs(gaps).max(axis=1) < arm.policy.alike)
+    near, out = np.abs(gaps).max(axis=1) < arm.policy.alike, np.zeros(len(a), dtype=bool)
+    if not near.any():
+        return out
     middle, T = (a + 0.5 * gaps)[near], T[near]
     off = np.abs(_linearized(arm, middle, T)[0]).max(axis=1)
     untold: _Flags = off < arm.policy.halfway
     some = np.flatnonzero(~untold & (off < arm.policy.arrived))
     if len(some):
         untold[some] = np.abs(_samples_beside(arm, middle[some], T[some]).left) < _SOLVED
-    out = np.zeros(len(a), dtype=bool)
     out[near] = untold
     return out
 

@@ -256,14 +256,15 @@ def _untold(arm: Arm, T: Array, a: Array, b: Array) -> Flags:
     """Which singular rows a (k, dof) towards aims T (k, ...) nothing tells from others nearby, b (k, dof):
     the pose is theirs between them too, on the straight way or on a curve beside that."""
     gaps = differences(arm, a, b)
-    near = np.flatnonzero(np.abs(gaps).max(axis=1) < arm.policy.alike)
+    near, out = np.abs(gaps).max(axis=1) < arm.policy.alike, np.zeros(len(a), dtype=bool)
+    if not near.any():
+        return out
     middle, T = (a + 0.5 * gaps)[near], T[near]
     off = np.abs(linearized(arm, middle, T)[0]).max(axis=1)
     untold: Flags = off < arm.policy.halfway
     some = np.flatnonzero(~untold & (off < arm.policy.arrived))
     if len(some):
         untold[some] = np.abs(samples_beside(arm, middle[some], T[some]).left) < SOLVED
-    out = np.zeros(len(a), dtype=bool)
     out[near] = untold
     return out
 
