@@ -6,18 +6,23 @@ import copy
 import importlib.util
 import pickle
 import shutil
+from collections.abc import Callable
+from contextlib import nullcontext
 from pathlib import Path
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 from tests.support.small_robots import elbow_robot
 
 import ikgen
-from ikgen.errors import ArgumentError, MissingToolError
+from ikgen.errors import ArgumentError, MissingToolError, VerificationError
 from ikgen.library.compilation import CompiledArm, _compare
 from ikgen.verify.runners import cpp_toolchain
 from ikgen.verify.runners.cpp_toolchain import LIGHT
+
+Array = NDArray[np.float64]
 
 ELBOW = Path(__file__).resolve().parents[2] / "examples/setuptools_robot/urdf/elbow.urdf"
 UR5E = Path(__file__).resolve().parents[2] / "urdf_fixtures/ur5e.urdf"
@@ -56,6 +61,41 @@ def test_limits_beyond_half_a_turn_are_compared_too(
     arm = ikgen.load(robot, verify=False)
     assert arm.lower[0] == lower
     _compare(arm, cast(CompiledArm, arm))
+
+
+class Altered:
+    """What an arm answers, with the rows of each pose altered."""
+
+    def __init__(self, arm: ikgen.Arm, alter: Callable[[Array], Array]) -> None:
+        self.arm, self.alter = arm, alter
+
+    def solve(self, pose: Array) -> Any:
+        found = self.arm.solve(pose)
+        q = self.alter(found.q)
+        return self.arm.module.Solutions(q, found.status, found.singular[: len(q)])
+
+    def solve_batch(self, poses: Array) -> tuple[Array, Array]:
+        q, count, _ = self.arm.solve_batch(poses)
+        return q, np.array([len(self.alter(rows[:n])) for rows, n in zip(q, count, strict=True)])
+
+
+@pytest.mark.parametrize(
+    ("alter", "same"),
+    [
+        (lambda q: q[::-1], True),
+        (lambda q: q + 1e-8, True),
+        (lambda q: q + 1e-5, False),
+        (lambda q: q[1:], False),
+        (lambda q: np.concatenate([q[:1], q[:-1]]), False),
+    ],
+    ids=["another order", "last digits", "off", "one less", "one twice"],
+)
+def test_rows_are_compared_in_any_order(alter: Callable[[Array], Array], same: bool) -> None:
+    """Which of them Newton steps find first hangs on last digits."""
+    arm = ikgen.load(ELBOW, verify=False)
+    other = cast(CompiledArm, Altered(arm, alter))
+    with nullcontext() if same else pytest.raises(VerificationError, match="gives other rows"):
+        _compare(arm, other)
 
 
 @pytest.mark.slow
