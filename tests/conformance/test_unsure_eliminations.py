@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from benchmarks.agreement import arm_of, runner_of
 from tests.support.dh_files import dh_file
-from tests.support.sampled import in_languages
+from tests.support.sampled import BOTH, in_languages
 from tests.support.serial_urdf import serial_urdf
 from tests.support.solving import import_text
 
@@ -68,6 +68,40 @@ def test_rounding_takes_double_roots_far_apart(tmp_path: Path) -> None:
 
 
 Q, H = "1.5707963267948966", "3.141592653589793"
+
+NEARLY_FOUR_PARALLEL = (
+    ("0 0 0.07", "0 0 0"), ("-0.231 0 0", f"{Q} 0 0"), ("-0.129 0.352 0", f"-{Q} 0 0"),
+    ("-0.255 0 0.25", "0 0 0"), ("0.555 0 -0.162", "0 0 0"),
+)  # fmt: skip
+OFF = [
+    (0.001230, 0.298746, -0.274138, -0.890592, -0.454671),
+    (0.689404, -0.327213, -0.368576, -0.250195, 1.523529),
+    (-0.807367, -0.721515, 0.583305, -0.755515, 0.432780),
+    (0.897304, 0.380998, -0.600947, -0.014876, 0.756800),
+    (-0.186036, -0.198165, 0.786506, 1.045260, -1.509444),
+    (0.619141, -0.334903, 0.498716, -0.890060, -0.361714),
+]
+"""1e-7 rad: off the second joint at half a turn, where four axes are parallel and move round a curve."""
+
+
+@BOTH
+def test_rows_beside_a_curve_are_found_on_it(language: str, tmp_path: Path) -> None:
+    """Where the elimination's roots, and what is nearest to the pose, lie at other places of the curve."""
+    tip = ("0.151 0 0", "0 0 0")
+    path = serial_urdf(tmp_path / "five.urdf", NEARLY_FOUR_PARALLEL, tip=tip, limit=3.2)
+    derivation = derive(Request(path))
+    assert derivation.module.plan is not None
+    arm = arm_of(derivation)
+    q = np.array([-np.pi, -np.pi, 0.5 * np.pi, 0.0, 0.0]) + 1e-7 * np.array(OFF)
+    sample = SampleSet("beside a curve", q, arm.oracle.forward(q), arm.sigma(q))
+    assert sample.sigma.max() < 1e-12
+    trial = run_trial(runner_of(derivation, language, tmp_path), arm, sample, limits=False)
+    assert (trial.rows.count > 0).all()
+    index, rows, _ = trial.rows.flat()
+    position, rotation = arm.task.errors(arm.oracle.forward(rows), sample.poses[index])
+    assert max(position.max(), rotation.max()) < 1e-9
+
+
 BESIDE_A_CONTINUUM = (
     ("-0.141 0 0.318", f"0 -{Q} {Q}"), ("0.102 0 0", f"{Q} 0 0"), ("-0.128 0 0", f"{Q} {Q} {Q}"),
     ("-0.109 0 0", f"{Q} 0 -{Q}"), ("-0.137 0.123 0", "0 0 0"),

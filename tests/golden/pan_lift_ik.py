@@ -2481,23 +2481,35 @@ def _inside(arm: _Arm, asked: _Asked, i: int, found: list[_Found], limits: bool)
 
 
 def _led_to_or_along(arm: _Arm, asked: _Asked, rows: Array) -> list[list[_Found]]:
-    """What Newton steps from each pose's row lead to, or else the solutions on a curve through it that
-    is a continuum of the arm's but for a little that is left, or what undamped steps lead to."""
+    """What Newton steps from each pose's row lead to, or else the solutions on a curve through it that is a
+    continuum of the arm's but for a little that is left, or what undamped steps lead to."""
     led = _led_to(arm, asked, rows)
-    some = np.flatnonzero([not one for one in led])
-    if len(some):
-        aim, broken = asked.aim(arm, some), np.ones(len(some), dtype=bool)
-        _, owner, q, sigma = arm.around(arm, rows[some], aim, broken)
-        flags = (sigma < arm.policy.continuum_below).tolist()
-        for k, row in zip(some[owner].tolist(), zip(map(tuple, q.tolist()), flags)):
-            led[k].append(row)
+    for find in (_along, _flat):
         some = np.flatnonzero([not one for one in led])
-    if len(some):
-        there, error = _flat_steps(arm.chain, arm.task, arm.moving, rows[some], asked.aim(arm, some))
-        some, there = some[error < arm.policy.arrived], there[error < arm.policy.arrived]
-        for k, found in zip(some.tolist(), _led_to(arm, asked.at(some), there)):
+        if not len(some):
+            break
+        for k, found in zip(some.tolist(), find(arm, asked.at(some), rows[some])):
             led[k] = found
     return led
+
+
+def _along(arm: _Arm, asked: _Asked, rows: Array) -> list[list[_Found]]:
+    """The solutions on curves through each pose's row."""
+    found: list[list[_Found]] = [[] for _ in rows]
+    broken = np.ones(len(rows), dtype=bool)
+    _, owner, q, sigma = _rows_around(arm, rows, asked.aim(arm), broken)
+    flags = (sigma < arm.policy.continuum_below).tolist()
+    for k, row in zip(owner.tolist(), zip(map(tuple, q.tolist()), flags)):
+        found[k].append(row)
+    return found
+
+
+def _flat(arm: _Arm, asked: _Asked, rows: Array) -> list[list[_Found]]:
+    """What undamped steps from each pose's row lead to."""
+    there, error = _flat_steps(arm.chain, arm.task, arm.moving, rows, asked.aim(arm))
+    led = _led_to(arm, asked, there)
+    right = (error < arm.policy.arrived).tolist()
+    return [found if ok else [] for found, ok in zip(led, right)]
 
 
 # All solutions of poses near singularities, and of those that leave joints free.

@@ -45,8 +45,7 @@ def placed_rows(arm: Arm, asked: Asked, limits: bool) -> list[Answer]:
     lost = sorted(i for i in doubtful if not out[i].rows)
     if lost:
         take_nearest(arm, asked, np.array(lost), limits, out)
-    if arm.around is not None:
-        take_along(arm, asked, limits, out)
+    take_along(arm, asked, limits, out)
     return out
 
 

@@ -15,6 +15,7 @@ from ikgen.runtime.python.newton.refinement import smallest_singular_values
 from ikgen.runtime.python.rows.row_placement import place_rows
 from ikgen.runtime.python.singular.limit_curves import rows_along
 from ikgen.runtime.python.singular.limit_rows import rows_inside
+from ikgen.runtime.python.singular.near_continuum import rows_around
 from ikgen.runtime.python.solving.asked_poses import Answer, Asked
 from ikgen.runtime.python.solving.closed_form_rows import closed_form
 from ikgen.runtime.python.solving.doubtful_rows import add_new, led_to
@@ -107,19 +108,32 @@ def _inside(arm: Arm, asked: Asked, i: int, found: list[Found], limits: bool) ->
 
 def _led_to_or_along(arm: Arm, asked: Asked, rows: Array) -> list[list[Found]]:
     """What Newton steps from each pose's row lead to, or else the solutions on a curve through it that
-    is a continuum of the arm's but for a little that is left, or what undamped steps lead to."""
+    is a continuum of the arm's but for a little that is left, or what undamped steps lead to; where the
+    closed form is an elimination these first, as rows are nearer then."""
     led = led_to(arm, asked, rows)
-    some = np.flatnonzero([not one for one in led])
-    if arm.around is not None and len(some):
-        aim, broken = asked.aim(arm, some), np.ones(len(some), dtype=bool)
-        _, owner, q, sigma = arm.around(arm, rows[some], aim, broken)
-        flags = (sigma < arm.policy.continuum_below).tolist()
-        for k, row in zip(some[owner].tolist(), zip(map(tuple, q.tolist()), flags)):
-            led[k].append(row)
+    for find in (_flat, _along) if arm.branches is None else (_along, _flat):
         some = np.flatnonzero([not one for one in led])
-    if len(some):
-        there, error = flat_steps(arm.chain, arm.task, arm.moving, rows[some], asked.aim(arm, some))
-        some, there = some[error < arm.policy.arrived], there[error < arm.policy.arrived]
-        for k, found in zip(some.tolist(), led_to(arm, asked.at(some), there)):
+        if not len(some):
+            break
+        for k, found in zip(some.tolist(), find(arm, asked.at(some), rows[some])):
             led[k] = found
     return led
+
+
+def _along(arm: Arm, asked: Asked, rows: Array) -> list[list[Found]]:
+    """The solutions on curves through each pose's row."""
+    found: list[list[Found]] = [[] for _ in rows]
+    broken = np.ones(len(rows), dtype=bool)
+    _, owner, q, sigma = rows_around(arm, rows, asked.aim(arm), broken)
+    flags = (sigma < arm.policy.continuum_below).tolist()
+    for k, row in zip(owner.tolist(), zip(map(tuple, q.tolist()), flags)):
+        found[k].append(row)
+    return found
+
+
+def _flat(arm: Arm, asked: Asked, rows: Array) -> list[list[Found]]:
+    """What undamped steps from each pose's row lead to."""
+    there, error = flat_steps(arm.chain, arm.task, arm.moving, rows, asked.aim(arm))
+    led = led_to(arm, asked, there)
+    right = (error < arm.policy.arrived).tolist()
+    return [found if ok else [] for found, ok in zip(led, right)]
