@@ -59,6 +59,15 @@ CROSSING = np.array(  # where the wrist's broken continuum crosses the shoulder'
     ]
 )  # fmt: skip
 
+BESIDE_A_FOLD = (  # the wrist's continuum crosses the curve along which the elbow is nearly stretched
+    ("0 0 0.414", "0 0 0"),
+    ("0.562986 -0.451922 -0.000118", "-1.5708 -1.5708 0"),
+    ("0.572938 4.9e-05 0", "0 0 0"),
+    ("-0.222985 0.271902 0", "-1.5708 0 0"),
+    ("0.000115 -9.8e-05 -2.1e-05", "1.5708 0 0"),
+    ("-6.9e-05 5.6e-05 0", "-1.5708 0 0"),
+)
+
 
 def gaps(path: Path, configurations: Array, folder: Path) -> Array:
     """How far (2, N) the nearest row is from each of many beside these, in both languages."""
@@ -80,3 +89,11 @@ def test_solutions_on_curves_that_cross_are_found(tmp_path: Path) -> None:
     tool = ("0 0 -0.061525", "3.1416 0 -3.1416")
     path = serial_urdf(tmp_path / "wrist.urdf", SHOULDER_TOO, tip=tool, limit=3.1)
     assert gaps(path, CROSSING, tmp_path).max() < 1e-3
+
+
+def test_curves_that_cross_beside_a_fold_are_found(tmp_path: Path) -> None:
+    """The direction that moves the pose least turns there from one curve to the other."""
+    tool = ("0 0 0.129", "0 0 0")
+    path = serial_urdf(tmp_path / "wrist.urdf", BESIDE_A_FOLD, tip=tool, limit=3.2)
+    folded_back = np.pi / 4 * np.array([[0.0, -3.0, -3.0, 3.0, 4.0, -4.0]])
+    assert gaps(path, folded_back, tmp_path).max() < 1e-5

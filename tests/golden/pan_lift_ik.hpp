@@ -1318,7 +1318,7 @@ template <class Arm> struct FoldPair {
   static constexpr double kAlong = 1e-4;  // rad or m: the way over which slopes are compared for the second derivative
   static constexpr double kClose = 1e-9, kFar = 0.3;  // rad or m: a step that is shorter is the last; a step, at most
   static constexpr double kSure = 1e-3;  // of the way from one solution to the other: nearer Newton's method goes there
-  static constexpr double kShare = 0.1, kTogether = 1e-2;  // of that way (rad or m): nearer they are one solution
+  static constexpr double kShare = 0.1, kTogether = 1e-3;  // of that way (rad or m): nearer they are one solution
   static constexpr double kApart = 1e-8, kCubic = 20.0, kMixed = 3.0;  // least error of none; with what the second order
   static constexpr int kSteps = 8;
 
@@ -1772,7 +1772,7 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
       const Sample middle = Curve::part(a, b, 0.5);
       (Curve::fold.in_sense() == last.sense ? a : b) = middle;
     }
-    find_second(a);
+    find_across(last, a);
     for (const double side : {kAside, -kAside}) {
       double q[Arm::kDof], largest = 0.0;
       std::copy_n(a.q, Arm::kDof, q);
@@ -1786,9 +1786,11 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
     }
   }
 
-  void find_second(Sample& s) const noexcept {
-    double N[Fold::kMoving][Fold::kMoving];
-    Fold::factor_normal(PoseError<Arm>(s.q, Curve::fold.aim), N, s.still);
+  void find_across(const Crossing& part, Sample& s) const noexcept {
+    double N[Fold::kMoving][Fold::kMoving], along[Fold::kMoving];
+    way_to(part.from, part.to.q, along);
+    Fold::make_unit(along);
+    Fold::factor_normal(PoseError<Arm>(s.q, Curve::fold.aim), N, along);
     for (int k = 0; k < Fold::kMoving; ++k) s.still[k] = 1.0 + 0.1 * k;
     for (int i = 0; i < 4; ++i) {
       substitute(N, s.still);

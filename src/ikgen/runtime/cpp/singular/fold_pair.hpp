@@ -182,7 +182,7 @@ template <class Arm> struct FoldPair {
   static constexpr double kAlong = 1e-4;  // rad or m: the way over which slopes are compared for the second derivative
   static constexpr double kClose = 1e-9, kFar = 0.3;  // rad or m: a step that is shorter is the last; a step, at most
   static constexpr double kSure = 1e-3;  // of the way from one solution to the other: nearer Newton's method goes there
-  static constexpr double kShare = 0.1, kTogether = 1e-2;  // of that way (rad or m): nearer they are one solution
+  static constexpr double kShare = 0.1, kTogether = 1e-3;  // of that way (rad or m): nearer they are one solution
   static constexpr double kApart = 1e-8, kCubic = 20.0, kMixed = 3.0;  // least error of none; with what the second order
                                                                        // along leaves out, and the first order across
   static constexpr int kSteps = 8;

@@ -115,7 +115,7 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
       const Sample middle = Curve::part(a, b, 0.5);
       (Curve::fold.in_sense() == last.sense ? a : b) = middle;
     }
-    find_second(a);
+    find_across(last, a);
     for (const double side : {kAside, -kAside}) {
       double q[Arm::kDof], largest = 0.0;
       std::copy_n(a.q, Arm::kDof, q);
@@ -129,10 +129,13 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
     }
   }
 
-  // In the place of a sample's still direction the one across it in which the pose moves least, by inverse iteration.
-  void find_second(Sample& s) const noexcept {
-    double N[Fold::kMoving][Fold::kMoving];
-    Fold::factor_normal(PoseError<Arm>(s.q, Curve::fold.aim), N, s.still);
+  // In the place of a sample's still direction the one across the part in which the pose moves least, by inverse iteration:
+  // still directions turn there from one curve to the other.
+  void find_across(const Crossing& part, Sample& s) const noexcept {
+    double N[Fold::kMoving][Fold::kMoving], along[Fold::kMoving];
+    way_to(part.from, part.to.q, along);
+    Fold::make_unit(along);
+    Fold::factor_normal(PoseError<Arm>(s.q, Curve::fold.aim), N, along);
     for (int k = 0; k < Fold::kMoving; ++k) s.still[k] = 1.0 + 0.1 * k;
     for (int i = 0; i < 4; ++i) {
       substitute(N, s.still);
