@@ -1938,7 +1938,9 @@ def _beside_crossings(arm: _Arm, parts: _Parts, T: Array) -> tuple[_Index, Array
         for whole, part in zip(ends, middle):
             whole[side, each] = part
     at, way = _some_of(ends, 0), (parts.b.q - parts.a.q)[:, list(arm.moving)]
-    along = way / np.sqrt((way * way).sum(axis=1))[:, None]  # still directions turn from one to the other
+    along = (
+        way / np.sqrt((way * way).sum(axis=1))[:, None]
+    )  # still directions turn from one to the other
     other = np.linalg.svd(_others(arm, at._replace(still=along), aim))[2][:, -2]
     step = _ASIDE / np.abs(other).max(axis=1)[:, None] * other
     return parts.owner, _moved_rows(arm, at.q, step)

@@ -45,7 +45,9 @@ def beside_crossings(arm: Arm, parts: Parts, T: Array) -> tuple[Index, Array]:
         for whole, part in zip(ends, middle):
             whole[side, each] = part
     at, way = some_of(ends, 0), (parts.b.q - parts.a.q)[:, list(arm.moving)]
-    along = way / np.sqrt((way * way).sum(axis=1))[:, None]  # still directions turn from one to the other
+    along = (
+        way / np.sqrt((way * way).sum(axis=1))[:, None]
+    )  # still directions turn from one to the other
     other = np.linalg.svd(_others(arm, at._replace(still=along), aim))[2][:, -2]
     step = _ASIDE / np.abs(other).max(axis=1)[:, None] * other
     return parts.owner, moved_rows(arm, at.q, step)
