@@ -698,10 +698,15 @@ def _normal_inverse(slope: Array, damping: float = 1e-14) -> Array:
 
 def _of_normal(function: Callable[..., Array], normal: Array, *right: Array) -> Array:
     """What NumPy's `inv` or `solve` makes of normal equations (k, n, n)."""
-    try:
-        return np.asarray(function(normal, *right))
-    except np.linalg.LinAlgError:
-        return np.asarray(function(normal + _LOST * np.eye(normal.shape[1]), *right))
+    lost = _LOST
+    while True:
+        try:
+            return np.asarray(function(normal, *right))
+        except np.linalg.LinAlgError:
+            flat = np.linalg.slogdet(normal)[0] == 0.0
+            flat |= not flat.any()
+            normal = normal + np.where(flat, lost, 0.0)[:, None, None] * np.eye(normal.shape[1])
+            lost *= 100.0
 
 
 def _damped(square: Array, damping: Array | float) -> Array:

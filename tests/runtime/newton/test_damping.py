@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ikgen.runtime.python.newton.refinement import damped, normal_inverse
+from ikgen.runtime.python.newton.refinement import damped, normal_inverse, of_normal
 
 FAR_OUT = np.array(
     [[[1.00000000e+00, -2.20821717e+05, 7.65402351e+04, -3.99222707e+04, -4.54279916e-01, 8.90858984e-01],
@@ -32,6 +32,18 @@ def test_two_columns_far_out_that_are_the_same() -> None:
         slope[:, :, 2] = -slope[:, :, 1]
         slope[:, :, 3] = 2.0 * slope[:, :, 1]
         assert np.isfinite(normal_inverse(slope)).all()
+
+
+def test_more_is_added_until_none_is_singular() -> None:
+    """Beside 1e3 a damping of 1e-14 is rounded away; the others stay as they are."""
+    J = np.random.default_rng(1).uniform(-1, 1, (3, 6, 6))
+    normal = J.transpose(0, 2, 1) @ J
+    normal[1] = 0.0
+    normal[1, :2, :2] = 1e3
+    right = np.ones((3, 6, 1))
+    found = of_normal(np.linalg.solve, normal, right)
+    assert np.isfinite(found).all()
+    assert (found[[0, 2]] == np.linalg.solve(normal[[0, 2]], right[[0, 2]])).all()
 
 
 def test_arms_of_some_metres_are_damped_as_they_were() -> None:

@@ -148,11 +148,16 @@ def normal_inverse(slope: Array, damping: float = 1e-14) -> Array:
 
 def of_normal(function: Callable[..., Array], normal: Array, *right: Array) -> Array:
     """What NumPy's `inv` or `solve` makes of normal equations (k, n, n). Where two directions at once do
-    nothing, round-off may leave nothing of the damping: as much is added then."""
-    try:
-        return np.asarray(function(normal, *right))
-    except np.linalg.LinAlgError:
-        return np.asarray(function(normal + _LOST * np.eye(normal.shape[1]), *right))
+    nothing, round-off may leave nothing of the damping: as much is added there then, or more."""
+    lost = _LOST
+    while True:
+        try:
+            return np.asarray(function(normal, *right))
+        except np.linalg.LinAlgError:
+            flat = np.linalg.slogdet(normal)[0] == 0.0
+            flat |= not flat.any()
+            normal = normal + np.where(flat, lost, 0.0)[:, None, None] * np.eye(normal.shape[1])
+            lost *= 100.0
 
 
 def damped(square: Array, damping: Array | float) -> Array:
