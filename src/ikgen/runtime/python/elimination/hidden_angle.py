@@ -136,19 +136,19 @@ def all_clear(angle: Array, off: Array, doubtful: float | Array = DOUBTFUL) -> F
     clearly complex."""
     clear = (off < doubtful).sum(axis=1) == (off < REAL).sum(axis=1)
     apart = (off < _FOURFOLD) & (off >= doubtful)
-    some = np.nonzero(clear & apart.any(axis=1))[0]
-    clear[some] = ~(apart[some] & _crowded(angle[some], off[some])).any(axis=1)
+    row, root = np.nonzero(apart & clear[:, None])
+    clear[row[_crowded(angle, off, row, root)]] = False
     return np.asarray(clear)
 
 
-def _crowded(angle: Array, off: Array) -> Flags:
-    """Which roots (N, n) of real and imaginary parts `angle` and `off` may be of a fourfold one: complex,
-    with another pair about as near as their own halves are. Rounding takes those apart by its fourth root,
-    where it takes halves of a double one apart by its square root."""
-    across = np.exp(1j * (angle[:, :, None] - angle[:, None, :]))
-    beside = np.hypot(np.abs(np.angle(across)), off[:, :, None] - off[:, None, :])
-    near = (beside < _CROWD * off[:, :, None]).sum(axis=2)
-    return np.asarray(near >= 4)
+def _crowded(angle: Array, off: Array, row: Index, root: Index) -> Flags:
+    """Which of some roots (k,), by row and column of the real and imaginary parts `angle` and `off` (N, n),
+    may be of a fourfold one: complex, with another pair about as near as their own halves are. Rounding
+    takes those apart by its fourth root, where it takes halves of a double one apart by its square root."""
+    mine = off[row, root, None]
+    across = np.exp(1j * (angle[row, root, None] - angle[row]))
+    beside = np.hypot(np.abs(np.angle(across)), mine - off[row])
+    return np.asarray((beside < _CROWD * mine).sum(axis=1) >= 4)
 
 
 def solved(pivot: Array, N: Array, off: float = 0.0) -> Array:
