@@ -8,6 +8,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from tests.support.serial_urdf import serial_urdf
 
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.derivation import derive as derivation
@@ -132,3 +133,13 @@ def test_a_descent_takes_twelve_steps_of_half_a_radian(
     assert ending(0, 100.0 * way)[0] == pytest.approx([6.0 * way, 0.0])
     assert ending(1, 100.0 * way)[0] == pytest.approx([0.0, 6.0 * size * way])
     assert ending(0, 0.25 + 2.2 * way)[0] == pytest.approx([2.2 * way, 0.0], abs=1e-9)
+
+
+@pytest.mark.filterwarnings("error")
+def test_conditions_that_are_nowhere_finite_warn_of_nothing(tmp_path: Path) -> None:
+    """Those of a step that a rounded arm does not have."""
+    rounded = (("0 0 0.304", "0 0 0"), ("-0.14 0.523 0", "-1.5708 0 0"))
+    rounded += (("-0.579 0 0", "-1.5708 0 0"), ("0.343 0 0", "0 0 0"))
+    tip = ("0 0 0.078", "0 0 0")
+    path = serial_urdf(tmp_path / "arm.urdf", rounded, slides={0: "0 0 1"}, tip=tip, limit=3.2)
+    assert not derivation.derive(Request(path)).graph.open_joints

@@ -59,8 +59,8 @@ class TrigQuartic(Form):
         """The polynomial's derivative at the root, over the largest coefficient."""
         a2, b2, a1, b1, _ = self.probe
         c, s = unknown
-        slope = 2.0 * (b2 * (c * c - s * s) - 2.0 * a2 * c * s) + b1 * c - a1 * s
         with np.errstate(all="ignore"):
+            slope = 2.0 * (b2 * (c * c - s * s) - 2.0 * a2 * c * s) + b1 * c - a1 * s
             return np.asarray(np.abs(slope) / np.abs(np.stack(self.probe)).max(axis=0))
 
     def values(self, c: Sequence[Array]) -> list[tuple[Array, ...]]:

@@ -67,7 +67,7 @@ def _descend(
         shifted = np.concatenate([q, *(q + h * unit * np.eye(dof)[j] for j in range(dof))])
         with np.errstate(all="ignore"):
             f = conditions(candidate, system, shifted)[which].reshape(-1, dof + 1, n)
-        J = ((f[:, 1:] - f[:, :1]) / h).transpose(2, 0, 1)
+            J = ((f[:, 1:] - f[:, :1]) / h).transpose(2, 0, 1)
         if not np.isfinite(J).all():
             break
         step = np.linalg.pinv(J, rcond=1e-8) @ f[:, 0].T[:, :, None]
