@@ -1942,10 +1942,8 @@ def _beside_crossings(arm: _Arm, parts: _Parts, T: Array) -> tuple[_Index, Array
         side = (_keeps(arm, middle, aim) != sense).astype(np.intp)
         for whole, part in zip(ends, middle):
             whole[side, each] = part
-    at, way = _some_of(ends, 0), (parts.b.q - parts.a.q)[:, list(arm.moving)]
-    along = (
-        way / np.sqrt((way * way).sum(axis=1))[:, None]
-    )  # still directions turn from one to the other
+    at = _some_of(ends, 0)
+    along, _ = _unit((parts.b.q - parts.a.q)[:, list(arm.moving)])  # the still direction turns there
     other = np.linalg.svd(_others(arm, at._replace(still=along), aim))[2][:, -2]
     step = _ASIDE / np.abs(other).max(axis=1)[:, None] * other
     return parts.owner, _moved_rows(arm, at.q, step)
@@ -2514,10 +2512,12 @@ def _along(arm: _Arm, asked: _Asked, rows: Array) -> list[list[_Found]]:
 
 def _flat(arm: _Arm, asked: _Asked, rows: Array) -> list[list[_Found]]:
     """What undamped steps from each pose's row lead to."""
+    found: list[list[_Found]] = [[] for _ in rows]
     there, error = _flat_steps(arm.chain, arm.task, arm.moving, rows, asked.aim(arm))
-    led = _led_to(arm, asked, there)
-    right = (error < arm.policy.arrived).tolist()
-    return [found if ok else [] for found, ok in zip(led, right)]
+    some = np.flatnonzero(error < arm.policy.arrived)
+    for k, led in zip(some.tolist(), _led_to(arm, asked.at(some), there[some])):
+        found[k] = led
+    return found
 
 
 # All solutions of poses near singularities, and of those that leave joints free.

@@ -64,21 +64,23 @@ def test_limits_beyond_half_a_turn_are_compared_too(
 
 
 class Altered:
-    """What an arm answers, with the rows of each pose altered."""
+    """What an arm answers, with the rows of each pose altered: in batches alone, or one by one too."""
 
-    def __init__(self, arm: ikgen.Arm, alter: Callable[[Array], Array]) -> None:
-        self.arm, self.alter = arm, alter
+    def __init__(self, arm: ikgen.Arm, alter: Callable[[Array], Array], batches: bool) -> None:
+        self.arm, self.alter, self.batches = arm, alter, batches
 
     def solve(self, pose: Array) -> Any:
         found = self.arm.solve(pose)
-        q = self.alter(found.q)
+        q = found.q if self.batches else self.alter(found.q)
         return self.arm.module.Solutions(q, found.status, found.singular[: len(q)])
 
-    def solve_batch(self, poses: Array) -> tuple[Array, Array]:
-        q, count, _ = self.arm.solve_batch(poses)
-        return q, np.array([len(self.alter(rows[:n])) for rows, n in zip(q, count, strict=True)])
+    def solve_batch(self, poses: Array) -> tuple[list[Array], list[int], Array]:
+        q, count, status = self.arm.solve_batch(poses)
+        rows = [self.alter(some[:n]) for some, n in zip(q, count, strict=True)]
+        return rows, [len(some) for some in rows], status
 
 
+@pytest.mark.parametrize("batches", [False, True])
 @pytest.mark.parametrize(
     ("alter", "same"),
     [
@@ -90,10 +92,12 @@ class Altered:
     ],
     ids=["another order", "last digits", "off", "one less", "one twice"],
 )
-def test_rows_are_compared_in_any_order(alter: Callable[[Array], Array], same: bool) -> None:
+def test_rows_are_compared_in_any_order(
+    alter: Callable[[Array], Array], same: bool, batches: bool
+) -> None:
     """Which of them Newton steps find first hangs on last digits."""
     arm = ikgen.load(ELBOW, verify=False)
-    other = cast(CompiledArm, Altered(arm, alter))
+    other = cast(CompiledArm, Altered(arm, alter, batches))
     with nullcontext() if same else pytest.raises(VerificationError, match="gives other rows"):
         _compare(arm, other)
 

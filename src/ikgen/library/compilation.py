@@ -21,6 +21,7 @@ from ikgen.kinematics.joint_box import joint_box
 from ikgen.library.load_arguments import wrong
 from ikgen.library.loaded_arm import Arm
 from ikgen.library.solver_cache import cache_folder
+from ikgen.model.arrays import Array
 from ikgen.processes.scratch_folder import ScratchFolder
 
 if TYPE_CHECKING:
@@ -30,9 +31,6 @@ if TYPE_CHECKING:
 __all__ = ["CompiledArm", "compile"]
 
 _POSES = 64
-_SAME = 1e-6
-"""rad or m, or of a longer slide, by which rows of the compiled solver and of the Python module may differ:
-last digits move them the more the nearer they are to a singularity."""
 
 
 class CompiledArm(Arm):
@@ -148,24 +146,28 @@ def _loaded(folder: Path, package: str) -> ModuleType:
 def _compare(arm: Arm, compiled: CompiledArm) -> None:
     """Rows at some poses; both are the same program, of which the Python module was verified. In which
     order they come, and which stand for a continuum, hangs on last digits."""
+    from ikgen.verify.agreement import TOLERANCE
+
     rng = np.random.default_rng(0)
     low, high = joint_box(arm.derivation.dh, np.pi, 2.0 * np.pi)
     poses = arm.forward(rng.uniform(low, high, (_POSES, arm.dof)))
-    count = compiled.solve_batch(poses)[1]
-    for pose, many in zip(poses, count, strict=True):
+    rows, count, _ = compiled.solve_batch(poses)
+    for pose, batch, many in zip(poses, rows, count, strict=True):
         mine, theirs = compiled.solve(pose), arm.solve(pose)
-        regular = not (mine.singular.any() or theirs.singular.any())
-        if regular and not (many == len(mine) and _alike(mine, theirs)):
+        alike = mine.status is theirs.status
+        alike &= all(_apart(q, theirs.q) < TOLERANCE for q in (mine.q, batch[:many]))
+        if not (alike or mine.singular.any() or theirs.singular.any()):
             raise VerificationError(
                 f"the compiled solver of {arm.name} gives other rows than the Python module",
                 hint="please report it with the robot description and the compiler's version",
             )
 
 
-def _alike(one: Solutions, other: Solutions) -> bool:
-    """Whether there are as many rows, each like one of the other's, and the status is the same."""
-    if len(one) != len(other) or one.status is not other.status:
-        return False
-    scale = np.maximum(1.0, np.abs(other.q))
-    apart = (np.abs(one.q[:, None] - other.q) / scale).max(axis=2)
-    return all(apart.min(axis=k, initial=np.inf).max(initial=0.0) < _SAME for k in (0, 1))
+def _apart(one: Array, other: Array) -> float:
+    """How far a row (dof,) of either is from the nearest of the other's at most, in rad, m, or of a longer
+    slide; infinite where one has more."""
+    if len(one) != len(other):
+        return np.inf
+    scale = np.maximum(1.0, np.abs(other))
+    gaps = (np.abs(one[:, None] - other) / scale).max(axis=2)
+    return max(float(gaps.min(axis=k, initial=np.inf).max(initial=0.0)) for k in (0, 1))

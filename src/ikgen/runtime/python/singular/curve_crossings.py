@@ -11,7 +11,7 @@ from ikgen.runtime.python.arrays.array_types import Array, Flags, Index
 from ikgen.runtime.python.newton.arm_newton import linearized, moved_rows
 from ikgen.runtime.python.rows.solution_rows import places
 from ikgen.runtime.python.singular.curve_parts import Parts, between
-from ikgen.runtime.python.singular.fold_pair import Reduced, flow_and_others, keeps_sense
+from ikgen.runtime.python.singular.fold_pair import Reduced, flow_and_others, keeps_sense, unit
 
 __all__ = ["beside_crossings"]
 
@@ -44,10 +44,8 @@ def beside_crossings(arm: Arm, parts: Parts, T: Array) -> tuple[Index, Array]:
         side = (_keeps(arm, middle, aim) != sense).astype(np.intp)
         for whole, part in zip(ends, middle):
             whole[side, each] = part
-    at, way = some_of(ends, 0), (parts.b.q - parts.a.q)[:, list(arm.moving)]
-    along = (
-        way / np.sqrt((way * way).sum(axis=1))[:, None]
-    )  # still directions turn from one to the other
+    at = some_of(ends, 0)
+    along, _ = unit((parts.b.q - parts.a.q)[:, list(arm.moving)])  # the still direction turns there
     other = np.linalg.svd(_others(arm, at._replace(still=along), aim))[2][:, -2]
     step = _ASIDE / np.abs(other).max(axis=1)[:, None] * other
     return parts.owner, moved_rows(arm, at.q, step)

@@ -23,6 +23,7 @@ __all__ = [
     "generic",
     "keeps_sense",
     "still_directions",
+    "unit",
 ]
 
 _ALONG = 1e-4  # rad or m: the way over which slopes are compared for the second derivative
@@ -102,8 +103,8 @@ def correct(arm: Arm, at: Reduced, T: Array) -> tuple[Reduced, Array]:
     sides = np.empty((*error.shape, 3))
     sides[:, :, 0], sides[:, :, 1], sides[:, :, 2] = error, at.out, others.flow
     taken, going = others.take_away(sides)
-    still, size = _unit(at.still - going[:, :, 2])
-    out, remains = _unit(taken[:, :, 1])
+    still, size = unit(at.still - going[:, :, 2])
+    out, remains = unit(taken[:, :, 1])
     turned = np.flatnonzero(~(remains**2 >= _TURNED))
     if len(turned):
         out[turned] = _oriented(out[turned], some_of(others, turned))
@@ -183,10 +184,10 @@ def _still(slope: Array, still: Array, damping: float) -> Array:
     size = np.trace(inverse, axis1=1, axis2=2)[:, None, None]
     inverse = inverse / size  # so that its powers do not overflow
     twice = inverse @ inverse
-    return _unit((twice @ (twice @ still[:, :, None]))[:, :, 0])[0]
+    return unit((twice @ (twice @ still[:, :, None]))[:, :, 0])[0]
 
 
-def _unit(v: Array) -> tuple[Array, Array]:
+def unit(v: Array) -> tuple[Array, Array]:
     """v (k, n) at unit length, and its length (k,)."""
     size = np.sqrt(np.add.reduce(v * v, axis=1))
     return v / size[:, None], size

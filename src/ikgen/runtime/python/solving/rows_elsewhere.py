@@ -133,7 +133,9 @@ def _along(arm: Arm, asked: Asked, rows: Array) -> list[list[Found]]:
 
 def _flat(arm: Arm, asked: Asked, rows: Array) -> list[list[Found]]:
     """What undamped steps from each pose's row lead to."""
+    found: list[list[Found]] = [[] for _ in rows]
     there, error = flat_steps(arm.chain, arm.task, arm.moving, rows, asked.aim(arm))
-    led = led_to(arm, asked, there)
-    right = (error < arm.policy.arrived).tolist()
-    return [found if ok else [] for found, ok in zip(led, right)]
+    some = np.flatnonzero(error < arm.policy.arrived)
+    for k, led in zip(some.tolist(), led_to(arm, asked.at(some), there[some])):
+        found[k] = led
+    return found
