@@ -305,7 +305,7 @@ HARMLESS = (
         "any small motion puts the pose off",
     ),
     HarmlessChange(
-        "runtime/python/rows/row_placement.py", "if limits and most < inf:", "<", "<=",
+        "runtime/python/rows/row_placement.py", "if most < inf:", "<", "<=",
         "a limit that is infinite leaves the turns as they are",
     ),
     HarmlessChange(

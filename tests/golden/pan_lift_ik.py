@@ -216,7 +216,7 @@ def _branches_batch(T: Array, q0: Array, held: Array) -> tuple[Array, _Flags, _F
     singular = np.broadcast_to(singular, full).reshape(-1, count).T
     rough = np.broadcast_to(rough, full).reshape(-1, count).T
     doubt = np.broadcast_to(doubt, full).reshape(-1, count).T
-    return rows.reshape(DOF, -1, count).transpose(2, 1, 0), valid.copy(), singular.copy(), rough, doubt
+    return rows.reshape(DOF, -1, count).transpose(2, 1, 0), valid.copy("K"), singular.copy("K"), rough, doubt
 
 
 # Names of the types that all of the runtime speaks of.
@@ -839,7 +839,7 @@ def _distinct(arm: _Arm, q: Array, valid: _Flags) -> _Flags:
             same &= gap <= near * _slide_scale(value[later])
         if not same.any():
             return valid
-    valid, some = valid.copy(), same.any(axis=1)
+    valid, some = valid.copy("K"), same.any(axis=1)
     for i, k, equal in zip(later[some].tolist(), earlier[some].tolist(), same[some]):
         valid[:, i] &= ~(equal & valid[:, k])
     return valid
@@ -936,32 +936,43 @@ def _place_rows_batch(
 ) -> tuple[Array, _Flags, _Flags]:
     """Rows (N, M, dof) on the right turns, in place, which of them lie inside the limits, and which may be
     hardly outside."""
-    inside, close, reach = (*np.ones((2, *q.shape[:2]), dtype=bool), arm.policy.limit_reach)
-    for j, (turn, low, high) in enumerate(zip(arm.placing, arm.lower, arm.upper)):
-        value = q[..., j]
-        least, most = low - arm.policy.limit_tolerance, high + arm.policy.limit_tolerance
-        if turn:
-            value = np.where(value <= -0.5 * turn, value + turn, value)
-            value = np.where(value > 0.5 * turn, value - turn, value)
-            turns: Array = np.zeros(1)
-            if near is not None:
-                turns = np.round((near[:, None, j] - value) / turn)
-            if limits and least > -inf:
-                turns = np.maximum(turns, np.ceil((least - value) / turn))
-            if limits and most < inf:
-                turns = np.minimum(turns, np.floor((most - value) / turn))
-            value = value + turn * turns
-        if limits:
-            fits = (value >= least) & (value <= most)
-            inside &= fits
-            if close.any():
-                beyond = (value > low - reach) & (value < high + reach)
-                if turn:
-                    beyond |= value + turn < high + reach
-                close &= beyond
-            value = np.minimum(np.maximum(value, low), high)
-        q[..., j] = value
+    inside, close = np.ones((2, *q.shape[1::-1]), dtype=bool).transpose(0, 2, 1)  # as q in memory
+    least, most = _one_turn(arm.lower, arm.upper, arm.placing, limits)
+    for j in range(q.shape[2]):
+        some: tuple[Any, ...] = (slice(None), slice(None))
+        if near is None:
+            some = np.nonzero(~((least[j] < q[..., j]) & (q[..., j] < most[j])))
+        seed, place = None if near is None else near[:, None, j], (*some, j)
+        q[place], fits, beyond = _placed_values(arm, j, q[place], seed, limits)
+        inside[some] &= fits
+        close[some] &= beyond
     return q, inside, close & ~inside
+
+
+def _placed_values(
+    arm: _Arm, j: int, value: Array, near: Array | None, limits: bool
+) -> tuple[Array, _Flags, _Flags]:
+    """Values (...) of a joint on the right turns."""
+    turn, low, high, reach = arm.placing[j], arm.lower[j], arm.upper[j], arm.policy.limit_reach
+    if not limits:
+        low, high = -inf, inf
+    least, most = low - arm.policy.limit_tolerance, high + arm.policy.limit_tolerance
+    if turn:
+        value = np.where(value <= -0.5 * turn, value + turn, value)
+        value = np.where(value > 0.5 * turn, value - turn, value)
+        turns: Array = np.zeros(1)
+        if near is not None:
+            turns = np.round((near - value) / turn)
+        if least > -inf:
+            turns = np.maximum(turns, np.ceil((least - value) / turn))
+        if most < inf:
+            turns = np.minimum(turns, np.floor((most - value) / turn))
+        value = value + turn * turns
+    beyond = (value > low - reach) & (value < high + reach)
+    if turn:
+        beyond |= value + turn < high + reach
+    fits = (value >= least) & (value <= most)
+    return np.minimum(np.maximum(value, low), high), fits, beyond
 
 
 # The closed form's rows of many poses, and what Newton steps make of them.
@@ -1016,7 +1027,8 @@ def _closed_form(arm: _Arm, T: Array, near: Array | None, held: Array) -> _Close
 
 def _all_rows(arm: _Arm, T: Array, near: Array | None, held: Array) -> _AllRows:
     """All rows for poses T (N, 4, 4), as `_closed_form` has them."""
-    own, none = _closed_form(arm, T, near, held), np.zeros((len(T), 0), dtype=bool)
+    own = _closed_form(arm, T, near, held)
+    none = own.valid[:, :0]
     return _AllRows(own, _Beside(own.q[:, :0], none, none, none))
 
 
@@ -2976,18 +2988,7 @@ def _solve_chunk(arm: _Arm, T: Array, held: Array, near: Array | None, limits: b
     q, inside, close = _place_rows_batch(arm, q, near, limits)
     doubt |= (valid & close).any(axis=1)
     valid &= inside
-    distance: Array | _Flags = ~valid
-    if near is not None:
-        with np.errstate(over="ignore"):
-            far = float(np.finfo(float).max)
-            distance = np.minimum(((q - near[:, None, :]) ** 2).sum(axis=2), far)
-            distance = np.where(valid, distance, inf)
-    order = np.argsort(distance, axis=1, kind="stable")[:, : arm.most, None]
-    number = np.minimum(valid.sum(axis=1), arm.most)
-    some = np.take_along_axis(q, order, axis=1)
-    q = np.full((len(T), arm.most, q.shape[2]), np.nan)
-    q[:, : some.shape[1]] = some
-    q[np.arange(arm.most) >= number[:, None]] = np.nan
+    q, number = _in_first_places(arm, q, valid, near)
     asked = _Asked(T, near, held)
     for i, rows, some_real in _doubtful(arm, asked, limits, doubt, real, number):
         found = _in_order(arm, rows, asked.seed(i))
@@ -2997,8 +2998,25 @@ def _solve_chunk(arm: _Arm, T: Array, held: Array, near: Array | None, limits: b
     return q, number, status
 
 
+def _in_first_places(
+    arm: _Arm, q: Array, valid: _Flags, near: Array | None
+) -> tuple[Array, NDArray[np.int64]]:
+    """The valid ones of rows (N, M, dof), padded with NaN to (N, most, dof), nearest to seeds first."""
+    if near is not None:
+        with np.errstate(over="ignore"):
+            far = float(np.finfo(float).max)
+            distance = np.minimum(((q - near[:, None, :]) ** 2).sum(axis=2), far)
+        order = np.argsort(np.where(valid, distance, inf), axis=1, kind="stable")
+        q = np.take_along_axis(q, order[:, :, None], axis=1)
+        valid = np.take_along_axis(valid, order, axis=1)
+    out = np.full((len(q), max(q.shape[1], arm.most), q.shape[2]), np.nan)
+    pose, row = np.nonzero(valid)
+    out[pose, _places(pose)] = q[pose, row] + 0.0
+    return out[:, : arm.most], np.minimum(valid.sum(axis=1, dtype=np.int64), arm.most)
+
+
 def _doubtful(
-    arm: _Arm, asked: _Asked, limits: bool, doubt: _Flags, real: _Flags, number: Array
+    arm: _Arm, asked: _Asked, limits: bool, doubt: _Flags, real: _Flags, number: _Index
 ) -> Iterator[tuple[int, list[_Found], bool]]:
     """Poses, their rows and whether they have any before limits."""
     for some in _parts(doubt):

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from functools import cache
 from math import ceil, floor, inf, remainder
 from operator import lt
+from typing import Any
 
 import numpy as np
 
@@ -83,7 +84,7 @@ def distinct(arm: Arm, q: Array, valid: Flags) -> Flags:
             same &= gap <= near * slide_scale(value[later])
         if not same.any():
             return valid
-    valid, some = valid.copy(), same.any(axis=1)
+    valid, some = valid.copy("K"), same.any(axis=1)
     for i, k, equal in zip(later[some].tolist(), earlier[some].tolist(), same[some]):
         valid[:, i] &= ~(equal & valid[:, k])
     return valid
@@ -182,29 +183,41 @@ def place_rows_batch(
 ) -> tuple[Array, Flags, Flags]:
     """Rows (N, M, dof) on the right turns, in place, which of them lie inside the limits, and which may be
     hardly outside."""
-    inside, close, reach = (*np.ones((2, *q.shape[:2]), dtype=bool), arm.policy.limit_reach)
-    for j, (turn, low, high) in enumerate(zip(arm.placing, arm.lower, arm.upper)):
-        value = q[..., j]
-        least, most = low - arm.policy.limit_tolerance, high + arm.policy.limit_tolerance
-        if turn:
-            value = np.where(value <= -0.5 * turn, value + turn, value)
-            value = np.where(value > 0.5 * turn, value - turn, value)
-            turns: Array = np.zeros(1)
-            if near is not None:
-                turns = np.round((near[:, None, j] - value) / turn)
-            if limits and least > -inf:
-                turns = np.maximum(turns, np.ceil((least - value) / turn))
-            if limits and most < inf:
-                turns = np.minimum(turns, np.floor((most - value) / turn))
-            value = value + turn * turns
-        if limits:
-            fits = (value >= least) & (value <= most)
-            inside &= fits
-            if close.any():
-                beyond = (value > low - reach) & (value < high + reach)
-                if turn:
-                    beyond |= value + turn < high + reach
-                close &= beyond
-            value = np.minimum(np.maximum(value, low), high)
-        q[..., j] = value
+    inside, close = np.ones((2, *q.shape[1::-1]), dtype=bool).transpose(0, 2, 1)  # as q in memory
+    least, most = _one_turn(arm.lower, arm.upper, arm.placing, limits)
+    for j in range(q.shape[2]):
+        some: tuple[Any, ...] = (slice(None), slice(None))
+        if near is None:
+            some = np.nonzero(~((least[j] < q[..., j]) & (q[..., j] < most[j])))
+        seed, place = None if near is None else near[:, None, j], (*some, j)
+        q[place], fits, beyond = _placed_values(arm, j, q[place], seed, limits)
+        inside[some] &= fits
+        close[some] &= beyond
     return q, inside, close & ~inside
+
+
+def _placed_values(
+    arm: Arm, j: int, value: Array, near: Array | None, limits: bool
+) -> tuple[Array, Flags, Flags]:
+    """Values (...) of a joint on the right turns; which lie inside the limits, and which there or hardly
+    outside."""
+    turn, low, high, reach = arm.placing[j], arm.lower[j], arm.upper[j], arm.policy.limit_reach
+    if not limits:
+        low, high = -inf, inf
+    least, most = low - arm.policy.limit_tolerance, high + arm.policy.limit_tolerance
+    if turn:
+        value = np.where(value <= -0.5 * turn, value + turn, value)
+        value = np.where(value > 0.5 * turn, value - turn, value)
+        turns: Array = np.zeros(1)
+        if near is not None:
+            turns = np.round((near - value) / turn)
+        if least > -inf:
+            turns = np.maximum(turns, np.ceil((least - value) / turn))
+        if most < inf:
+            turns = np.minimum(turns, np.floor((most - value) / turn))
+        value = value + turn * turns
+    beyond = (value > low - reach) & (value < high + reach)
+    if turn:
+        beyond |= value + turn < high + reach
+    fits = (value >= least) & (value <= most)
+    return np.minimum(np.maximum(value, low), high), fits, beyond

@@ -15,6 +15,7 @@ from ikgen.runtime.python.arguments.pose_faults import nearest_poses, too_far
 from ikgen.runtime.python.arm.solved_arm import Arm, Found
 from ikgen.runtime.python.arrays.array_types import Array, Flags, Index
 from ikgen.runtime.python.rows.row_placement import in_order, place_rows, place_rows_batch
+from ikgen.runtime.python.rows.solution_rows import places
 from ikgen.runtime.python.rows.solutions import Status
 from ikgen.runtime.python.solving.asked_poses import Asked
 from ikgen.runtime.python.solving.closed_form_rows import careful_rows, certain_rows
@@ -76,18 +77,7 @@ def _solve_chunk(arm: Arm, T: Array, held: Array, near: Array | None, limits: bo
     q, inside, close = place_rows_batch(arm, q, near, limits)
     doubt |= (valid & close).any(axis=1)
     valid &= inside
-    distance: Array | Flags = ~valid
-    if near is not None:
-        with np.errstate(over="ignore"):
-            far = float(np.finfo(float).max)
-            distance = np.minimum(((q - near[:, None, :]) ** 2).sum(axis=2), far)
-            distance = np.where(valid, distance, inf)
-    order = np.argsort(distance, axis=1, kind="stable")[:, : arm.most, None]
-    number = np.minimum(valid.sum(axis=1), arm.most)
-    some = np.take_along_axis(q, order, axis=1)
-    q = np.full((len(T), arm.most, q.shape[2]), np.nan)
-    q[:, : some.shape[1]] = some
-    q[np.arange(arm.most) >= number[:, None]] = np.nan
+    q, number = _in_first_places(arm, q, valid, near)
     asked = Asked(T, near, held)
     for i, rows, some_real in _doubtful(arm, asked, limits, doubt, real, number):
         found = in_order(arm, rows, asked.seed(i))
@@ -97,8 +87,26 @@ def _solve_chunk(arm: Arm, T: Array, held: Array, near: Array | None, limits: bo
     return q, number, status
 
 
+def _in_first_places(
+    arm: Arm, q: Array, valid: Flags, near: Array | None
+) -> tuple[Array, NDArray[np.int64]]:
+    """The valid ones of rows (N, M, dof), padded with NaN to (N, most, dof), nearest to seeds first;
+    and how many there are (N,)."""
+    if near is not None:
+        with np.errstate(over="ignore"):
+            far = float(np.finfo(float).max)
+            distance = np.minimum(((q - near[:, None, :]) ** 2).sum(axis=2), far)
+        order = np.argsort(np.where(valid, distance, inf), axis=1, kind="stable")
+        q = np.take_along_axis(q, order[:, :, None], axis=1)
+        valid = np.take_along_axis(valid, order, axis=1)
+    out = np.full((len(q), max(q.shape[1], arm.most), q.shape[2]), np.nan)
+    pose, row = np.nonzero(valid)
+    out[pose, places(pose)] = q[pose, row] + 0.0
+    return out[:, : arm.most], np.minimum(valid.sum(axis=1, dtype=np.int64), arm.most)
+
+
 def _doubtful(
-    arm: Arm, asked: Asked, limits: bool, doubt: Flags, real: Flags, number: Array
+    arm: Arm, asked: Asked, limits: bool, doubt: Flags, real: Flags, number: Index
 ) -> Iterator[tuple[int, list[Found], bool]]:
     """Poses, their rows and whether they have any before limits: of those that leave a doubt, and of others
     without a row what their seeds lead to."""

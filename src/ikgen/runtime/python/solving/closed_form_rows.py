@@ -79,9 +79,10 @@ def closed_form(arm: Arm, T: Array, near: Array | None, held: Array) -> ClosedFo
 
 def all_rows(arm: Arm, T: Array, near: Array | None, held: Array) -> AllRows:
     """All rows for poses T (N, 4, 4), as `closed_form` has them."""
-    own, none = closed_form(arm, T, near, held), np.zeros((len(T), 0), dtype=bool)
+    own = closed_form(arm, T, near, held)
     if len(arm.beside) and arm.policy.beside_anywhere:
         return AllRows(own, rows_beside(arm, T, near, held))
+    none = own.valid[:, :0]
     return AllRows(own, Beside(own.q[:, :0], none, none, none))
 
 
@@ -110,7 +111,7 @@ def certain_rows(
     )
     pose, row = np.nonzero(valid)
     q[pose, row], arrived, missed = together(arm, q[pose, row], aims(arm, T, held)[pose])
-    found = valid.copy()
+    found = valid.copy("K")
     found[pose, row] = arrived
     doubt[pose[~(arrived | missed)]] = True
     doubt |= (distinct(arm, q, found) != found).any(axis=1) | ~found.any(axis=1)
