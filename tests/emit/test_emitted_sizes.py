@@ -24,5 +24,5 @@ MOST = {  # bytes of the module and of the header, 2 % above what they were
 def test_no_file_is_longer_than_its_class_had_it(robot: str) -> None:
     module = derive(Request(FIXTURES / f"{robot}.urdf")).module
     texts = emit_module(module), emit_header(module)
-    for text, most in zip(texts, MOST[robot]):
+    for text, most in zip(texts, MOST[robot], strict=True):
         assert 0.9 * most < len(text.encode()) <= most  # a file that shrank lowers its bound

@@ -2149,17 +2149,26 @@ _limit_curves_WAY = 1.2  # of `policy.try_step`: by so much joints move from one
 
 
 def _rows_along(
-    arm: _Arm, q: Array, T: Array, stands: Sequence[tuple[int, Row]]
-) -> tuple[_Index, Array]:
+    arm: _Arm,
+    q: Array,
+    T: Array,
+    stands: Sequence[tuple[int, Row]],
+    others: Sequence[tuple[int, Row]] = (),
+) -> tuple[_Index, Array, _Flags]:
     """Rows (n, dof) inside the limits, whole turns aside, of the continua through solutions q (k, dof) of
     aims T (k, ...), and whose they are (n,)."""
+    marks = [*stands, *others]
     with np.errstate(all="ignore"):
         parts, _, worst = _followed(arm, q, T)
         whole = np.bincount(parts.owner, minlength=len(q)) >= _LEAST
         whole &= worst < arm.policy.arrived
-        if stands:
-            owner, rows = np.array([k for k, _ in stands]), np.array([row for _, row in stands])
-            whole[owner[_on_curves(arm, parts, owner, rows, T)]] = False
+        whose = np.array([k for k, _ in marks], dtype=np.intp)
+        on = whole[whose]
+        if on.any():
+            rows = np.array([row for (_, row), some in zip(marks, on) if some])
+            on[on] = _on_curves(arm, parts, whose[on], rows, T)
+        stood = on[: len(stands)]
+        whole[whose[: len(stands)][stood]] = False
         parts = _some_of(parts, whole[parts.owner])
         parts = _some_of(parts, np.lexsort((parts.place, parts.owner)))
         parts = _some_of(parts, _beside_least(arm, parts))
@@ -2169,7 +2178,7 @@ def _rows_along(
     ends, error, _, _ = _refined(arm, rows[order], T[parts.owner[order]])
     right = error < arm.policy.arrived
     owner, first = np.unique(parts.owner[order[right]], return_index=True)
-    return owner, ends[right][first]
+    return owner, ends[right][first], on[len(stands) :]
 
 
 def _beside_least(arm: _Arm, parts: _Parts) -> _Flags:
@@ -2461,12 +2470,18 @@ def _take_along(arm: _Arm, asked: _Asked, limits: bool, out: list[_Answer]) -> N
     """Adds to answers rows inside the limits of the continua that rows outside are of, if none stands for
     them."""
     beyond = [_outside(arm, one, asked.seed(i), limits) for i, one in enumerate(out)]
-    for step in range(max(map(len, beyond), default=0)):
-        some = [i for i, rows in enumerate(beyond) if step < len(rows)]
-        q = np.array([beyond[i][step] for i in some])
+    left = [list(rows) for rows in beyond]
+    while any(left):
+        some = [i for i, rows in enumerate(left) if rows]
+        q = np.array([left[i].pop(0) for i in some])
         stands = [(k, row) for k, i in enumerate(some) for row, flag in out[i].rows if flag]
-        for k, row in zip(*_rows_along(arm, q, asked.aim(arm, np.array(some)), stands)):
-            _add_inside(arm, asked, some[k], [(tuple(row.tolist()), True)], limits, out)
+        others = [(k, row) for k, i in enumerate(some) for row in left[i]]
+        aim = asked.aim(arm, np.array(some))
+        owner, rows, passed = _rows_along(arm, q, aim, stands, others)
+        for k, row in zip(owner.tolist(), rows.tolist()):
+            _add_inside(arm, asked, some[k], [(tuple(row), True)], limits, out)
+        for k, i in enumerate(some):
+            left[i] = [row for (of, row), on in zip(others, passed) if of == k and not on]
     which = [i for i, rows in enumerate(beyond) for _ in rows if not out[i].stands]
     if which:
         q = _turned_inside(arm, np.array([row for i in dict.fromkeys(which) for row in beyond[i]]))

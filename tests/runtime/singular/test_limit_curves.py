@@ -38,7 +38,7 @@ def test_a_row_is_right_though_its_sample_did_not_converge(
 
     monkeypatch.setattr(limit_curves, "_least_outside", beside)
     pose = forward(arm.chain, AT)[None]
-    owner, rows = rows_along(arm, AT[None], pose, [])
+    owner, rows, _ = rows_along(arm, AT[None], pose, [])
     assert owner.tolist() == [0]
     assert np.abs(forward(arm.chain, rows[0]) - pose[0]).max() < 1e-9
     assert outside(arm, rows, True)[0] < 1e-5
@@ -49,3 +49,12 @@ def test_none_is_taken_where_one_on_it_stands_for_the_continuum(arm: Any) -> Non
     on = AT + 2.0 * (np.eye(6)[5] - np.eye(6)[3])
     for row, count in ((on, 0), (on + 0.1 * np.eye(6)[0], 1)):
         assert len(rows_along(arm, AT[None], pose, [(0, tuple(row.tolist()))])[0]) == count
+
+
+def test_others_that_are_on_the_continuum_are_told(arm: Any) -> None:
+    pose = forward(arm.chain, AT)[None]
+    on = AT - 0.7 * (np.eye(6)[5] - np.eye(6)[3])
+    others = [(0, tuple(row.tolist())) for row in (on, on + 0.1 * np.eye(6)[0])]
+    owner, _, passed = rows_along(arm, AT[None], pose, [], others)
+    assert owner.tolist() == [0]
+    assert passed.tolist() == [True, False]
