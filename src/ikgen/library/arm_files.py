@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -13,8 +13,9 @@ from ikgen.library.load_arguments import wrong
 from ikgen.outputs.publish import Content, check_folder, publish
 
 if TYPE_CHECKING:
-    from ikgen.library.loaded_arm import Arm
+    from ikgen.emit.derivation import Derivation
     from ikgen.records.request import Outputs, Request
+    from ikgen.verify.verification_report import VerificationReport
 
 __all__ = ["save", "write_page"]
 
@@ -44,8 +45,11 @@ def save(
         return generate(request, replace(outputs, emit=asked, out=folder)).files
 
 
-def write_page(arm: Arm, file: Path) -> Path:
-    """Write the derivation report, in the format of the file's suffix."""
+def write_page(
+    derived: Callable[[], Derivation], verification: VerificationReport | None, file: Path
+) -> Path:
+    """Write the derivation report, in the format of the file's suffix. `derived` makes the derivation,
+    which may take its time: it is called where the suffix and the folder will do."""
     from ikgen.report import emit_report
 
     end = _PAGES.get(file.suffix.lower())
@@ -56,8 +60,8 @@ def write_page(arm: Arm, file: Path) -> Path:
             hint=f"name it with one of {known}",
         )
     check_folder(file.parent)
-    report = arm.verification
-    texts = emit_report(arm.derivation.whole, {} if report is None else {"python": report})
+    reports = {} if verification is None else {"python": verification}
+    texts = emit_report(derived(), reports)
     found = next((text for name, text in texts.items() if name.endswith(end)), None)
     if found is None:
         what = f"file: '{file}' would be a graph of unknowns, and none of this arm is solved alone"

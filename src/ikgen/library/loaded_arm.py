@@ -280,7 +280,8 @@ class Arm:
         """Write the derivation as a page (.html), LaTeX (.tex, .pdf) or the solution graph (.svg)."""
         from ikgen.library.arm_files import write_page
 
-        return write_page(self, checked_path("file", file))
+        page = checked_path("file", file)
+        return write_page(lambda: self.derivation.whole, self.verification, page)
 
     def __repr__(self) -> str:
         held = f", holding {', '.join(self.free_joints)}" if self.free_joints else ""

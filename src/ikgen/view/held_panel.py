@@ -10,10 +10,10 @@ import numpy as np
 
 from ikgen.lowering.held_angle import held_values
 from ikgen.model.arrays import Array
+from ikgen.view.panel_scene import PanelScene
 
 if TYPE_CHECKING:
     from ikgen.report.worked_example import WorkedExample
-    from ikgen.view.arm_scene import ArmScene
 
 __all__ = ["HeldPanel"]
 
@@ -27,7 +27,7 @@ class HeldPanel:
     """`values` are those of what is held (rad or m), joints or the arm angle, at first `start`'s; None
     for an arm that holds nothing."""
 
-    def __init__(self, scene: ArmScene, start: WorkedExample) -> None:
+    def __init__(self, scene: PanelScene, start: WorkedExample) -> None:
         self._scene = scene
         dh, gui = scene.derivation.reading.dh, scene.server.gui
         values = held_values(dh, start.q, start.pose)

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from ikgen.model.arrays import Array
 from ikgen.view.followed_path import Followed, between, followed
-
-if TYPE_CHECKING:
-    from ikgen.view.arm_scene import ArmScene
+from ikgen.view.panel_scene import PanelScene
 
 __all__ = ["PathPanel"]
 
@@ -23,7 +21,7 @@ _OTHER, _REACHED = (48, 11, 89), (3, 26, 147)
 class PathPanel:
     """`marks` are poses (4, 4) of the target, `followed` what came of following them (None: nothing)."""
 
-    def __init__(self, scene: ArmScene) -> None:
+    def __init__(self, scene: PanelScene) -> None:
         self._scene, self._server = scene, scene.server
         self.marks: list[Array] = []
         self.followed: Followed | None = None

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from ikgen.reach.grid import grid_over
 from ikgen.reach.png_image import colours
 from ikgen.reach.reach_map import ReachMap, interpreted_engine, reach_map
-
-if TYPE_CHECKING:
-    from ikgen.view.arm_scene import ArmScene
+from ikgen.view.panel_scene import PanelScene
 
 __all__ = ["ReachPanel"]
 
@@ -22,7 +20,7 @@ _CELLS, _DIRECTIONS = 16, 12
 class ReachPanel:
     """`found` is the map that is shown: the given one, or a coarse one computed when it is asked for."""
 
-    def __init__(self, scene: ArmScene, found: ReachMap | None = None) -> None:
+    def __init__(self, scene: PanelScene, found: ReachMap | None = None) -> None:
         self._scene, self.found = scene, found
         self._handle: Any = None
         gui = scene.server.gui
