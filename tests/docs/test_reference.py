@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import importlib.util
 import json
+import pkgutil
 import re
 import subprocess
 import sys
@@ -96,6 +97,30 @@ def test_config_example_is_one_and_all_entries_are_listed(tmp_path: Path) -> Non
         load_config(tmp_path / "ikgen.toml")
     known = caught.value.hint.removeprefix("there is: ").split(", ")
     assert len(known) > 8 and set(known) <= words("config.md")
+
+
+OBJECT = re.compile(r"^::: (?P<name>[\w.]+)\n(?P<options>(?: {2,}.*\n)*)", re.M)
+"""What a page takes from docstrings, and what of it."""
+
+
+def described() -> list[str]:
+    """Objects that pages take from docstrings, and the members that they name of one."""
+    found = []
+    for page in PAGES:
+        for entry in OBJECT.finditer(page.read_text(encoding="utf-8") + "\n"):
+            members = re.search(r"members: \[(.*)\]", entry["options"])
+            names = re.findall(r"\w+", members[1]) if members is not None else []
+            found += [entry["name"], *(f"{entry['name']}.{name}" for name in names)]
+    return found
+
+
+@pytest.mark.parametrize("name", described())
+def test_objects_that_pages_describe_exist(name: str) -> None:
+    assert pkgutil.resolve_name(name) is not None
+
+
+def test_members_that_pages_name_are_looked_for() -> None:
+    assert {"ikgen.program.ops.Op", "ikgen.program.liveness.live_names"} <= set(described())
 
 
 def test_dh_example_is_one(tmp_path: Path) -> None:
