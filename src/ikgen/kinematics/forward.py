@@ -7,6 +7,7 @@
 from __future__ import annotations
 
 import math
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,9 +15,10 @@ from numpy.typing import ArrayLike
 from ikgen.kinematics.fixed_order import product
 from ikgen.kinematics.rigid import dh_link, z_motion
 from ikgen.model.arrays import Array
-from ikgen.model.dh import DHChain, DHRow
+from ikgen.model.dh import DHChain
 
 __all__ = [
+    "RowConstants",
     "dh_forward",
     "dh_frames",
     "file_forward",
@@ -26,6 +28,31 @@ __all__ = [
     "row_constant",
     "row_values",
 ]
+
+
+class _Constant(Protocol):
+    @property
+    def value(self) -> float: ...
+
+
+class RowConstants(Protocol):
+    """The constants of a DH row: a chain's, or as a table has them."""
+
+    @property
+    def alpha(self) -> _Constant:
+        """In rad."""
+
+    @property
+    def a(self) -> _Constant:
+        """In m."""
+
+    @property
+    def theta(self) -> _Constant:
+        """In rad."""
+
+    @property
+    def d(self) -> _Constant:
+        """In m."""
 
 
 def dh_forward(dh: DHChain, q: ArrayLike) -> Array:
@@ -89,7 +116,7 @@ def row_values(dh: DHChain, q: ArrayLike) -> Array:
     return np.asarray(scale * values[..., [row.driver for row in dh.rows]] + offset)
 
 
-def row_constant(row: DHRow) -> Array:
+def row_constant(row: RowConstants) -> Array:
     """`Rx(alpha) Tx(a) Rz(theta) Tz(d)` (4, 4) with the row's variable at 0."""
     return dh_link(row.alpha.value, row.a.value, row.theta.value, row.d.value)
 

@@ -16,11 +16,11 @@ import numpy as np
 from ikgen.importers.dh.entry_expression import Quantity, number
 from ikgen.importers.dh.table_entries import Entry
 from ikgen.kinematics.fixed_order import product
-from ikgen.kinematics.rigid import dh_link
+from ikgen.kinematics.forward import row_constant
 from ikgen.model.arrays import Array
 from ikgen.model.joint_tree import Limits
 
-__all__ = ["Merged", "ModifiedRow", "merge", "modified_rows", "row_matrix"]
+__all__ = ["Merged", "ModifiedRow", "merge", "modified_rows"]
 
 ZERO = number(0.0)
 
@@ -64,19 +64,14 @@ def modified_rows(entries: Sequence[Entry], convention: str) -> list[ModifiedRow
     return out
 
 
-def row_matrix(row: ModifiedRow) -> Array:
-    """`Rx(alpha) Tx(a) Rz(theta) Tz(d)` (4, 4) with the variable at 0."""
-    return dh_link(row.alpha.value, row.a.value, row.theta.value, row.d.value)
-
-
 def merge(rows: Sequence[ModifiedRow], X_base: Array, X_tip: Array) -> Merged:
     """Fixed rows go into the ends, into their neighbours where that is exact, else they stay."""
     left = list(rows)
     while left and left[0].kind == "fixed":
-        X_base = product(X_base, row_matrix(left.pop(0)))
+        X_base = product(X_base, row_constant(left.pop(0)))
     tail = np.eye(4)
     while left and left[-1].kind == "fixed":
-        tail = product(row_matrix(left.pop()), tail)
+        tail = product(row_constant(left.pop()), tail)
     out: list[ModifiedRow] = []
     complete = True
     for row in left:

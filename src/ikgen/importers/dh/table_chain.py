@@ -7,9 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 from ikgen.importers.dh.constant_names import SymbolTable, symbol_of
-from ikgen.importers.dh.row_merge import Merged, ModifiedRow, row_matrix
+from ikgen.importers.dh.row_merge import Merged, ModifiedRow
 from ikgen.kinematics.file_frames import largest_deviation
 from ikgen.kinematics.fixed_order import product
+from ikgen.kinematics.forward import row_constant
 from ikgen.kinematics.modified_dh import to_dh
 from ikgen.kinematics.rigid import read_only
 from ikgen.kinematics.snapping import SnapLog
@@ -76,7 +77,7 @@ def chain_of_rows(
     axes: list[ChainAxis] = []
     pending = merged.X_base
     for row in merged.rows:
-        pending = product(pending, row_matrix(row))
+        pending = product(pending, row_constant(row))
         if row.kind != "fixed":
             axis = np.array([0.0, 0.0, 1.0])
             axes.append(ChainAxis(row.name, row.kind, pending, axis, len(axes)))
@@ -146,4 +147,4 @@ def _constant(row: ModifiedRow, theta: float, d: float) -> Array:
         theta=replace(row.theta, value=theta),
         d=replace(row.d, value=d),
     )
-    return row_matrix(shown)
+    return row_constant(shown)
