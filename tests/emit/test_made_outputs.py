@@ -26,9 +26,10 @@ from ikgen.emit.cpp.cpp_twist_chain import twist_lines
 from ikgen.emit.derivation import Held
 from ikgen.emit.python.python_emitter import _held_name, _held_turns
 from ikgen.emit.solver_module import SolverModule, most_rows
+from ikgen.emit.twist_numbers import twist_numbers
 from ikgen.errors import UsageError
 from ikgen.kinematics.twist_links import twist_chain
-from ikgen.model.dh import ARM_ANGLE_OPTION, Angle
+from ikgen.model.dh import ARM_ANGLE_OPTION, Angle, DHRow
 from ikgen.program.policy import SolvePolicy
 
 PI, INF = math.pi, math.inf
@@ -69,6 +70,19 @@ def test_braced_lists_hold_the_chain() -> None:
         assert (scale, offset, x, y) == (link.scale, link.offset, link.x, link.y)
         assert (ct, st) == pytest.approx((math.cos(link.turn), math.sin(link.turn)), abs=1e-15)
         assert (c, s) == pytest.approx((math.cos(link.twist), math.sin(link.twist)), abs=1e-15)
+
+
+def test_links_that_follow_the_joints_one_by_one_are_direct() -> None:
+    module = made_module()
+    rows = module.dh.rows
+
+    def direct(*rows: DHRow) -> bool:
+        return twist_numbers(replace(module, dh=replace(module.dh, rows=rows)), repr).direct
+
+    assert direct(*rows)
+    assert not direct(replace(rows[0], scale=-1.0), *rows[1:])
+    assert not direct(rows[1], rows[0], rows[2])
+    assert not direct(*rows[:2], replace(rows[2], driver=1))
 
 
 def planned(

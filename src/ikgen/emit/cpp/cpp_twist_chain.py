@@ -1,4 +1,4 @@
-"""The chain on which C++ refines rows in lanes: its constants as text."""
+"""The chain on which C++ refines rows in lanes: its constants as braced lists."""
 
 from __future__ import annotations
 
@@ -7,9 +7,7 @@ from dataclasses import dataclass
 
 from ikgen.emit.cpp.cpp_language import number
 from ikgen.emit.solver_module import SolverModule
-from ikgen.kinematics.rigid import exact_cos_sin
-from ikgen.kinematics.twist_links import TwistLink, twist_chain
-from ikgen.model.arrays import Array
+from ikgen.emit.twist_numbers import LinkNumbers, twist_numbers
 
 __all__ = ["TwistLines", "twist_lines"]
 
@@ -25,21 +23,14 @@ class TwistLines:
 
 def twist_lines(module: SolverModule) -> TwistLines:
     """Braced lists of the file's own chain in twist form."""
-    chain = twist_chain(module.dh)
-    links = tuple(map(_link, chain.links))
-    return TwistLines(_rows(chain.first), links, _rows(chain.last))
+    numbers = twist_numbers(module, number)
+    first, last = (tuple(map(_braced, rows)) for rows in (numbers.first, numbers.last))
+    return TwistLines(first, tuple(map(_link, numbers.links)), last)
 
 
-def _rows(F: Array) -> tuple[str, ...]:
-    return tuple(_braced(map(number, row)) for row in F[:3].tolist())
-
-
-def _link(link: TwistLink) -> str:
-    values = (
-        link.scale, link.offset, *exact_cos_sin(link.turn), link.x, link.y, *exact_cos_sin(link.twist)
-    )  # fmt: skip
+def _link(link: LinkNumbers) -> str:
     turning = "true" if link.revolute else "false"
-    return _braced([str(link.driver), turning, *map(number, values)])
+    return _braced([str(link.driver), turning, link.scale, link.offset, *link.constants])
 
 
 def _braced(parts: Iterable[str]) -> str:

@@ -12,7 +12,6 @@ from ikgen.emit.gear_text import gear_text
 from ikgen.emit.printer import expression
 from ikgen.emit.python.branch_kinds import branch_kind, elbow_end
 from ikgen.emit.python.bundle import bundle
-from ikgen.emit.python.lane_text import lane_text
 from ikgen.emit.python.python_language import SCALAR, number
 from ikgen.emit.python.python_statements import batch_lines, scalar_lines
 from ikgen.emit.python.python_text import literal, words
@@ -20,6 +19,7 @@ from ikgen.emit.python.reached_definitions import Key
 from ikgen.emit.python.settled_branches import SOME, Facts
 from ikgen.emit.rendering import render
 from ikgen.emit.solver_module import SolverModule
+from ikgen.emit.twist_numbers import twist_numbers
 from ikgen.runtime.python.arm.solve_policy import Policy
 
 if TYPE_CHECKING:
@@ -62,7 +62,7 @@ def shell_values(module: SolverModule) -> dict[str, Any]:
             [[number(x) for x in row] for row in F[:3].tolist()] for F in module.solved_frames
         ],
         "rows": [(row.driver, row.revolute, row.scale, row.offset.value) for row in module.dh.rows],
-        "lanes": lane_text(module) if module.refine == "all" else None,
+        "lanes": twist_numbers(module, number) if module.refine == "all" else None,
         "number": number,
         "literal": literal,
         "words": words,
