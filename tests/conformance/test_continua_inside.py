@@ -59,7 +59,7 @@ def test_a_held_joint_stays_on_its_turn_along_a_broken_continuum(
     path = tmp_path / "arm.urdf"
     path.write_text(serial_urdf("arm", joints))
     derivation = derive(Request(path, free={name: None}))
-    assert derivation.module.refine == "all"
+    assert derivation.module.rounded
     q = np.random.default_rng(1).uniform(0.1, 1.2, (60, 7))
     q[:, 0] += 3.2
     q[:, 5] = 10.0 ** np.random.default_rng(2).uniform(-7.0, -2.0, 60)

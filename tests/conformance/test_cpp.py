@@ -133,7 +133,7 @@ def test_rows_are_the_interpreters(name: str, folder: Path) -> None:
         if not any_row or flags.any() or found.singular[i].any():
             continue  # such rows take Newton steps, and other free values are tried
         assert len(mine) == len(rows), (i, mine, rows)
-        tolerance = 1e-7 if arm.module.refine == "all" else 1e-9
+        tolerance = 1e-7 if arm.module.rounded else 1e-9
         assert gap(arm.module, mine, rows).max() < tolerance, (i, mine, rows)
         compared += 1
     assert compared > SAMPLES // 3
@@ -162,13 +162,13 @@ def test_rows_are_the_python_modules(name: str, seeded: bool, folder: Path) -> N
         other = python.solve(pose, seed=arm.q[i] if seeded else None, limits=False)
         mine = found.q[i, : found.count[i]]
         assert found.status[i] == other.status.value
-        if other.singular.any() and arm.module.refine == "all":
+        if other.singular.any() and arm.module.rounded:
             continue  # how far a row slides along a continuum hangs on the last digits
         assert len(mine) == len(other.q), (i, mine, other.q)
         apart = np.array([[gap(arm.module, a, b).max() for b in other.q] for a in mine])
         limit = 1e-6 if other.singular.any() else 1e-9
         assert max(apart.min(axis=0).max(), apart.min(axis=1).max()) < limit, (i, mine, other.q)
-        if not (other.singular.any() or seeded or arm.module.refine == "all"):
+        if not (other.singular.any() or seeded or arm.module.rounded):
             assert np.diag(apart).max() < limit, (i, mine, other.q)
 
 

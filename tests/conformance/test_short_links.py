@@ -51,7 +51,7 @@ def test_poses_at_which_two_short_links_are_in_line_have_rows(tmp_path: Path) ->
             path, base="l0", tip="l9", free={"insertion": None, "wrist_pitch1": None, "jaw": None}
         )
     )
-    assert made.module.refine == "all"
+    assert made.module.rounded
     arm, rng = import_text(emit_module(made.module), tmp_path), np.random.default_rng(2)
     q = rng.uniform(arm.LOWER, arm.UPPER, (120, arm.DOF))
     q[:, 5] = rng.choice([0.0, 1e-5, 1e-3, 1e-2], 120)

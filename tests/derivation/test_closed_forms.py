@@ -39,7 +39,7 @@ def test_a_quartic_of_lengths_that_it_divides_by_is_none_of_rounding(
     found = derive(Request(path)).module
     assert found.reads.stem == "position-direction"
     assert any("quartic" in step for step in found.order) == quartic
-    assert found.refine == ("some" if quartic else "all")
+    assert found.rounded is not quartic
 
 
 def test_a_quartic_of_a_geometry_far_off_gives_way_to_the_elimination(tmp_path: Path) -> None:
@@ -59,7 +59,7 @@ def test_a_quartic_of_a_geometry_far_off_gives_way_to_the_elimination(tmp_path: 
     path.write_text(text)
     derived = derive(Request(path, tip="tool0"))
     assert derived.module.order == ("all joints (6R elimination)",)
-    assert derived.module.refine == "some"
+    assert not derived.module.rounded
 
 
 @pytest.mark.parametrize(("offset", "rules"), [(2e-5, True), (4e-4, False)])
@@ -80,7 +80,7 @@ def test_offsets_that_add_up_give_way_to_the_elimination(
     path.write_text(serial_urdf("wrist", made))
     module = derive(Request(path)).module
     assert (module.order == ("all joints (6R elimination)",)) is not rules
-    assert module.refine == ("all" if rules else "some")
+    assert module.rounded is rules
 
 
 def parallel(joints: int, folder: Path) -> Request:

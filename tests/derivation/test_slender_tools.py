@@ -113,7 +113,7 @@ def test_rounded_tools_are_solved_as_exact_ones(tmp_path: Path) -> None:
     for rpy in (_ALONG, *_ROUNDINGS):
         robot.write_text(_robot(_pointing(rpy)))
         derivation = derive(Request(robot, task="position-direction"))
-        assert derivation.module.refine == "some" and derivation.graph.sound
+        assert not derivation.module.rounded and derivation.graph.sound
         steps = derivation.graph.steps
         solved.append([(step.candidate.unknown, step.branches) for step in steps])
     assert solved[1:] == solved[:1] * len(_ROUNDINGS)
@@ -127,5 +127,5 @@ def test_its_rows_take_newton_steps_all_at_once(tmp_path: Path) -> None:
     for frames, coarse in ((_SLENDER, True), (straight, False)):
         robot.write_text(_robot(frames))
         module = derive(Request(robot)).module
-        assert module.refine == "some" and module.program.coarse == coarse
+        assert not module.rounded and module.program.coarse == coarse
         assert f"kNewton = {str(coarse).lower()};" in emit_header(module)

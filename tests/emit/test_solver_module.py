@@ -12,17 +12,17 @@ from ikgen.program.policy import SolvePolicy
 
 
 @pytest.mark.parametrize(
-    ("deviation", "plan", "refine", "far"),
+    ("deviation", "plan", "rounded", "rough", "far"),
     [
-        (0.0, None, "some", False),
-        (1e-5, None, "all", False),
-        (1e-3, None, "all", True),
-        (1e-3, object(), "some", False),
-        (0.0, object(), "some", False),
+        (0.0, None, False, True, False),
+        (1e-5, None, True, False, False),
+        (1e-3, None, True, False, True),
+        (1e-3, object(), False, False, False),
+        (0.0, object(), False, False, False),
     ],
 )
 def test_rows_of_rounded_files_are_refined(
-    deviation: float, plan: object, refine: str, far: bool
+    deviation: float, plan: object, rounded: bool, rough: bool, far: bool
 ) -> None:
     dh = SimpleNamespace(deviation=(0.0, deviation), most_driven=1.0)
     module = SolverModule(
@@ -30,7 +30,7 @@ def test_rows_of_rounded_files_are_refined(
         source_name="", source_sha256="", generator_version="", plan=plan,
     )  # fmt: skip
     policy = SolvePolicy()
-    assert (module.refine, module.far) == (refine, far)
+    assert (module.rounded, module.tells_rough, module.far) == (rounded, rough, far)
     near = policy.fold * math.sqrt(deviation)
     assert module.policy.fold_reach == pytest.approx(max(policy.fold_reach, near))
     beside = policy.anywhere if far else near

@@ -61,7 +61,7 @@ def test_the_chain_is_the_arms_own_and_the_rows_are_the_models(tmp_path: Path) -
 def test_the_closed_form_is_that_of_the_models_class(tmp_path: Path) -> None:
     own = derive(calibrated(OWN, tmp_path)).module
     assert not any("elimination" in step for step in own.order)
-    assert len(own.order) == len(derive(UR5E).module.order) and own.refine == "all"
+    assert len(own.order) == len(derive(UR5E).module.order) and own.rounded
 
 
 def test_the_origins_are_those_of_the_file(tmp_path: Path) -> None:

@@ -84,7 +84,7 @@ def test_limits_beyond_one_period_have_each_row_once(
     if rounded:
         round_elbow(robot)
     made = derive(request(robot))
-    assert (made.module.refine == "all") is rounded
+    assert made.module.rounded is rounded
     arm, turn = import_text(emit_module(made.module), tmp_path), 2.0 * np.pi
     rng, period = np.random.default_rng(8), [turn / abs(ratio), turn, turn]
     starts = np.column_stack([rng.uniform(*limits, 30), rng.uniform(-2.5, 2.5, (30, 2))])

@@ -153,13 +153,13 @@ def _held_chains(reading: Reading, task: Task) -> list[DHChain]:
 def attempt(form: ClosedForm, progress: Progress) -> Attempt:
     """What a derivation came to: what would be generated of it, where it is closed."""
     from ikgen.derivation.settled_form import settled_form
-    from ikgen.emit.solver_module import most_rows, refines_all
+    from ikgen.emit.solver_module import is_rounded, most_rows
 
     most, order, left = 0, form.graph.order, form.graph.open_joints
     if form.closed or form.plan is not None:
         form, program = settled_form(form, progress)
-        refined = refines_all(form.reading.dh, form.plan)
-        most, order, left = most_rows(program.max_solutions, refined), form.graph.order, ()
+        rounded = is_rounded(form.reading.dh, form.plan)
+        most, order, left = most_rows(program.max_solutions, rounded), form.graph.order, ()
     graph, task, dh = form.graph, form.task, form.reading.dh
     if form.plan is not None:
         order = (f"all joints at once (general {form.plan.routine.words} elimination)",)

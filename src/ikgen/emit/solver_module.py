@@ -19,7 +19,7 @@ from ikgen.program.statements import Program
 from ikgen.tasks import AXES, Task, find_task
 from ikgen.tasks.fitting import freedoms_moved, keeps_heading_level
 
-__all__ = ["CLOSE", "SolverModule", "most_rows", "refines_all"]
+__all__ = ["CLOSE", "SolverModule", "is_rounded", "most_rows"]
 
 CLOSE = 8e-10
 """Deviation up to which a row that is exact for the solved geometry is right for the file (1e-9)."""
@@ -29,15 +29,15 @@ FAR = 1.5e-5
 steps near folds, at regular configurations too."""
 
 
-def refines_all(dh: DHChain, plan: EliminationPlan | None) -> bool:
-    """Whether all rows take Newton steps: the file is off what the rules solved."""
+def is_rounded(dh: DHChain, plan: EliminationPlan | None) -> bool:
+    """Whether the file is off what the rules solved, as it rounds the exact geometry."""
     return plan is None and max(dh.deviation) > CLOSE
 
 
-def most_rows(lanes: int, refined: bool) -> int:
+def most_rows(lanes: int, rounded: bool) -> int:
     """Rows of a solution at most, `lanes` of the closed form. Of a rounded file each row of what was solved
     may lead to two near folds; six joints have sixteen at most."""
-    return min(2 * lanes, max(lanes, 16)) if refined else lanes
+    return min(2 * lanes, max(lanes, 16)) if rounded else lanes
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,16 +96,22 @@ class SolverModule:
         return self.dh.held
 
     @property
-    def refine(self) -> str:
-        """Which rows take Newton steps on the file's own chain: "some" (those of a continuum or on the
-        boundary, where the closed form lost digits) or "all" (the file rounds its geometry)."""
-        return "all" if refines_all(self.dh, self.plan) else "some"
+    def rounded(self) -> bool:
+        """Whether the closed form is of the exact geometry that the file rounds: then all rows take Newton
+        steps on the file's own chain."""
+        return is_rounded(self.dh, self.plan)
+
+    @property
+    def tells_rough(self) -> bool:
+        """Whether the closed form tells the rows that take Newton steps: those of a continuum or on the
+        boundary, where it lost digits. Otherwise all do."""
+        return not self.rounded and self.plan is None
 
     @property
     def solved_frames(self) -> tuple[NDArray[np.float64], ...]:
         """The constants (4, 4) of the chain that was solved, as the file's are in `program.frames`; empty
         where the closed form is the file's."""
-        return dh_frames(self.dh) if self.refine == "all" else ()
+        return dh_frames(self.dh) if self.rounded else ()
 
     @property
     def policy(self) -> SolvePolicy:
@@ -139,12 +145,12 @@ class SolverModule:
         one, and all rows take Newton steps to the asked one. Near a fold two solutions of the file's
         geometry may start from one of the solved geometry or from none, but not at all these poses.
         Empty where the closed form is the file's."""
-        return () if self.refine == "some" else displacements(4.0 * max(self.dh.deviation))
+        return displacements(4.0 * max(self.dh.deviation)) if self.rounded else ()
 
     @property
     def far(self) -> bool:
         """Whether the file is so far from what was solved that poses beside are solved near no fold too."""
-        return self.refine == "all" and max(self.dh.deviation) > FAR
+        return self.rounded and max(self.dh.deviation) > FAR
 
     @property
     def guarded(self) -> bool:
@@ -154,7 +160,7 @@ class SolverModule:
     @property
     def max_solutions(self) -> int:
         """Rows of the solution at most (two whole turns of a joint count once)."""
-        return most_rows(self.lanes, self.refine == "all")
+        return most_rows(self.lanes, self.rounded)
 
     @property
     def lanes(self) -> int:

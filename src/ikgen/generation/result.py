@@ -16,7 +16,7 @@ __all__ = ["as_dict", "branches_beside", "rounding"]
 def rounding(derivation: Derivation) -> tuple[float, float] | None:
     """How far (m, rad) the file is off what was solved, where Newton steps take the rows to it; else
     None."""
-    return None if derivation.module.refine == "some" else derivation.reading.dh.deviation
+    return derivation.reading.dh.deviation if derivation.module.rounded else None
 
 
 def branches_beside(derivation: Derivation) -> tuple[str, ...]:

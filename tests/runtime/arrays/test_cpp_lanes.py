@@ -177,7 +177,7 @@ def apart(a: Array, b: Array) -> Array:
 
 def rounded(chain: Chain) -> SolverModule:
     module = solver_module(to_dh(chain))
-    assert module.refine == "all"
+    assert module.rounded
     return module
 
 
@@ -214,7 +214,7 @@ def test_a_slide_and_fewer_joints_than_equations(tmp_path: Path) -> None:
 def test_lanes_find_the_rows_at_an_arm_angle(tmp_path: Path) -> None:
     """Elbows on the half plane that is asked for, as one by one."""
     module = held_module("rounded_arm_angle", tmp_path)
-    assert module.refine == "all"
+    assert module.rounded
     q = np.random.default_rng(4).uniform(-2, 2, (100, 7))
     found = answers(module, q, tmp_path, "-march=native")
     for (rows, batch, careful), rough in found:

@@ -31,7 +31,7 @@ Array = NDArray[np.float64]
 @pytest.fixture(scope="module")
 def doosan(tmp_path_factory: pytest.TempPathFactory) -> ModuleType:
     module = solver_module("doosan_m1013")
-    assert module.refine == "all" and len(module.beside) == 6
+    assert module.rounded and len(module.beside) == 6
     return import_text(emit_module(module), tmp_path_factory.mktemp("doosan"))
 
 

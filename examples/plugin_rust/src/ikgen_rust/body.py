@@ -69,7 +69,7 @@ def _row(module: SolverModule) -> list[str]:
     program = module.program
     singular = " || ".join(program.singular) or "false"
     rough = " || ".join([*program.singular, *(f"{r} > ROUGH" for r in program.residuals)])
-    if module.refine == "all":
+    if module.rounded:
         rough = "true"
     row = ", ".join(_text(output.value) for output in program.outputs)
     flags = f"singular: {singular}, rough: {rough or 'false'}"

@@ -131,7 +131,7 @@ def _known_facts(module: SolverModule) -> ArmFacts:
         ("kFree", bool(module.held)),
         ("kNewton", _newton(module)),
         ("kRefined", _careful(module)),
-        ("kRounded", module.refine == "all"),
+        ("kRounded", module.rounded),
     )
 
 
@@ -149,7 +149,7 @@ def _careful(module: SolverModule) -> bool:
 
 def _newton(module: SolverModule) -> bool:
     """Whether all rows are refined at once."""
-    return module.refine == "all" or module.program.coarse
+    return module.rounded or module.program.coarse
 
 
 def _refinement(module: SolverModule) -> dict[str, object]:
@@ -239,7 +239,7 @@ def _depth_first(branches: list[int]) -> list[int]:
 def _rough(module: SolverModule, policy: SolvePolicy) -> str:
     """Condition under which a row takes Newton steps."""
     program = module.program
-    if module.refine == "all":
+    if module.rounded:
         return "(spread<1>(1.0) > 0.0)"
     return " | ".join(
         [*program.singular, *(f"({r} > {policy.rough_square})" for r in program.residuals)]

@@ -62,7 +62,7 @@ def shell_values(module: SolverModule) -> dict[str, Any]:
             [[number(x) for x in row] for row in F[:3].tolist()] for F in module.solved_frames
         ],
         "rows": [(row.driver, row.revolute, row.scale, row.offset.value) for row in module.dh.rows],
-        "lanes": twist_numbers(module, number) if module.refine == "all" else None,
+        "lanes": twist_numbers(module, number) if module.rounded else None,
         "number": number,
         "literal": literal,
         "words": words,
@@ -95,7 +95,7 @@ def _finder(module: SolverModule) -> dict[str, str] | None:
 
 def known_facts(module: SolverModule) -> Facts:
     """What is known of the runtime's `Arm` that the templates make."""
-    refined, branches = module.refine == "all", None if module.plan is not None else SOME
+    branches = None if module.plan is not None else SOME
     known = [
         ("around", branches),
         ("beside", SOME if module.beside else ()),
@@ -104,14 +104,14 @@ def known_facts(module: SolverModule) -> Facts:
         ("free", SOME if module.free_indices else ()),
         ("free_joints", SOME if module.held else ()),
         ("policy.beside_anywhere", runtime_policy(module.policy).beside_anywhere),
-        ("rounded", refined),
+        ("rounded", module.rounded),
         (
             "square",
             module.reads.whole_pose
             and module.dh.dof - len(module.free_indices) == 6
             and not module.dh.arm_angle,
         ),
-        ("together", SOME if refined else None),
+        ("together", SOME if module.rounded else None),
     ]
     return tuple(known if module.dh.arm_angle else [*known, ("angle", None)])
 

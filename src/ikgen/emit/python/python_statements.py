@@ -53,7 +53,7 @@ def _scalar_row(module: SolverModule) -> list[str]:
     values = [expression(SCALAR, one.value) for one in program.outputs]
     row = ", ".join(values) + ("," if len(values) == 1 else "")
     rough = "True"
-    if module.refine == "some":
+    if module.tells_rough:
         rough = " or ".join([*program.singular, *(f"{r} > _ROUGH" for r in program.residuals)])
     lines = [f"rows.append((({row}), {rough or 'False'}))"]
     return [f"doubt = doubt or {' or '.join(program.doubts)}", *lines] if program.doubts else lines
@@ -124,7 +124,7 @@ def _batch_inputs(module: SolverModule) -> list[str]:
 def _batch_flags(module: SolverModule) -> list[str]:
     program = module.program
     rough = "np.ones(1, dtype=bool)"
-    if module.refine == "some" and module.plan is None:
+    if module.tells_rough:
         rough = " | ".join(["singular", *(f"({r} > _ROUGH)" for r in program.residuals)])
     doubt = " | ".join(program.doubts) or "np.zeros(1, dtype=bool)"
     return [f"rough: _Flags = {rough}", f"doubt: _Flags = {doubt}"]
