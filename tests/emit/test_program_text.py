@@ -154,7 +154,7 @@ def test_cpp_names_what_a_routine_finds_and_what_branches_decide() -> None:
     for k, name in enumerate(("c2", "s2")):
         assert text.count(f"const auto {name} = roots_2.value[{k}];") == 1
     assert "const auto real_3 = real_2 & roots_2.found;" in text
-    assert found.flags["alike"] == ["meeting<Policy, 2 * P>(c1, s1)", "roots_2.found"]
+    assert found.flags["meeting"] == ["meeting<Policy, 2 * P>(c1, s1)", "roots_2.found"]
     assert found.flags["hit"] == ["(real_1 & near)"]
     assert [line for line in found.lines if line.startswith("//")] == [
         "// the sides", "// theta_1: made up", "// theta_2: made up"

@@ -304,7 +304,7 @@ def _chain_of(frames: Array, motions: tuple[_Motion, ...], dof: int) -> _Chain:
     scale, offset = (np.array([m[i] for m in motions]) for i in (2, 3))
     slides = tuple(i for i, m in enumerate(motions) if not m[1])
     drive = scale[:, None] * (joint[:, None] == np.arange(dof))
-    alike = np.array_equal(drive, np.eye(dof))
+    direct = np.array_equal(drive, np.eye(dof))
     return _Chain(
         frames,
         motions,
@@ -314,7 +314,7 @@ def _chain_of(frames: Array, motions: tuple[_Motion, ...], dof: int) -> _Chain:
         scale,
         offset,
         slides,
-        None if alike else drive,
+        None if direct else drive,
         dof,
     )
 

@@ -6,6 +6,7 @@ import re
 from pathlib import Path
 
 import ikgen.runtime
+from ikgen.program.policy import SolvePolicy
 
 RUNTIME = Path(ikgen.runtime.__file__).parent
 PYTHON = re.compile(r"^_?([A-Z][A-Z0-9_]*)(?:: \w+)? = ([-\d.e]+)(?=\s)", re.MULTILINE)
@@ -59,3 +60,9 @@ def test_they_are_the_same() -> None:
                 differs = (path.stem, name) in OTHERWISE
                 assert (one[name] != two[name]) == differs, (other, name, one[name], two[name])
     assert compared >= 64
+
+
+def test_eliminations_go_by_the_policy() -> None:
+    found = numbers(RUNTIME / "cpp/elimination/general_6r_solutions.hpp", CPP)
+    policy = SolvePolicy()
+    assert found["coincidentrows"] == policy.coincident and found["verified"] == policy.arrived

@@ -43,9 +43,10 @@ class SolvePolicy:
     - `orthonormal`: how far a rotation's entries may be off by round-off.
     - `level`: by how much a heading's squared length may be short of 1.
     - `coincident`: rows closer than that (rad or m) are one.
-    - `alike`: singular rows closer than that (rad or m) are one, if the pose is theirs between them.
+    - `alike`: rows closer than that in every joint (rad or m) are neighbours. Singular ones are one, if the
+      pose is theirs between them; of a continuum `crowd` stay, of a search on a grid the best.
     - `halfway`: error up to which the pose is that of what is between two rows.
-    - `crowd`: rows of a continuum that are alike, at most: as many as solutions meet where two folds do.
+    - `crowd`: neighbours on a continuum, at most: as many as solutions meet where two folds do.
     - `meeting`: how close branches are where their rows are compared.
     - `limit_tolerance`: a row no farther outside a limit (rad or m) is put back on it.
     - `limit_reach`: a row no farther outside a limit (rad or m) is tried on it, by Newton steps.

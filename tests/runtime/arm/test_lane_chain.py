@@ -22,7 +22,7 @@ from ikgen.runtime.python.arm.lane_tasks import PoseLanes
 CHAINS = (three_parallel(skew=1e-4), spherical_wrist(), SLIDES)
 
 
-def lanes(dh: DHChain, alike: bool) -> LaneChain:
+def lanes(dh: DHChain, direct: bool) -> LaneChain:
     twisted = twist_chain(dh)
     links = twisted.links
     return LaneChain(
@@ -33,7 +33,7 @@ def lanes(dh: DHChain, alike: bool) -> LaneChain:
         np.array([[one.offset] for one in links]),
         tuple(map(link, links)),
         twisted.last,
-        alike,
+        direct,
     )
 
 
@@ -42,16 +42,16 @@ def link(one: TwistLink) -> Link:
 
 
 @pytest.mark.parametrize("chain", CHAINS)
-@pytest.mark.parametrize("alike", [False, True])
-def test_tips_and_jacobians_are_the_files(chain: Chain, alike: bool) -> None:
+@pytest.mark.parametrize("direct", [False, True])
+def test_tips_and_jacobians_are_the_files(chain: Chain, direct: bool) -> None:
     dh = to_dh(chain)
-    if alike:
+    if direct:
         rows = [replace(row, scale=1.0) for row in dh.rows]
         dh = replace(dh, rows=tuple(rows))
     motions = tuple((r.driver, r.revolute, r.scale, r.offset.value) for r in dh.rows)
     plain = chain_of(np.array(dh.file_frames), motions, dh.dof)
     q = np.random.default_rng(2).uniform(-3, 3, (dh.dof, 50))
-    lane = lanes(dh, alike)
+    lane = lanes(dh, direct)
     values = lane.changes(q) + lane.offset
     tip, axes = walk(lane, values, sines(values))
     J = lane_jacobian(lane, tip, axes, dh.dof)

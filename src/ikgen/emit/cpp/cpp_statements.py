@@ -35,7 +35,7 @@ class ProgramText:
             self.fixed[let.name] = evaluate(let.value, self.fixed)
         self._fold_fixed_lets()
         self.lines: list[str] = []
-        self.flags: dict[str, list[str]] = {"hit": [], "alike": []}
+        self.flags: dict[str, list[str]] = {"hit": [], "meeting": []}
         self.real = ""
         self._guards = 0
         self._folds = 0
@@ -82,7 +82,7 @@ class ProgramText:
                 self._fork(index, level, width)
             width *= level.branches
             self._body(index, level)
-            self._alike(level, width)
+            self._meeting(level, width)
 
     def _fork(self, index: int, level: Level, width: int) -> None:
         if level.call is not None:
@@ -101,7 +101,7 @@ class ProgramText:
             if name in self.live:
                 self._let(name, f"{roots}.value[{k}]")
         self._require(index, f"{roots}.found")
-        self.flags["alike"].append(f"{roots}.found")
+        self.flags["meeting"].append(f"{roots}.found")
         if self.module.plan is not None:
             self.flags["hit"].append(f"{roots}.open")
 
@@ -140,11 +140,11 @@ class ProgramText:
         self._let(name, f"{self.real} & {condition}" if self.real else condition)
         self.real = name
 
-    def _alike(self, level: Level, width: int) -> None:
+    def _meeting(self, level: Level, width: int) -> None:
         """Whether the two branches of a level meet, which makes equal rows."""
         names = [n for n in level.solved if n in self.live]
         if names:
-            self.flags["alike"].append(f"meeting<Policy, {width} * P>({', '.join(names)})")
+            self.flags["meeting"].append(f"meeting<Policy, {width} * P>({', '.join(names)})")
 
     def _let(self, name: str, text: str) -> None:
         self._statement(f"const auto {name} = {text};")

@@ -66,7 +66,7 @@ inline Apart count_apart(const Frames& F, const Frame& T, const Turning& turning
     bool fresh = folds[static_cast<Index>(k)] = square < meets * meets;
     out.meet = out.meet || fresh;
     for (int i = 0; i < k && fresh; ++i)
-      fresh = !(folds[static_cast<Index>(i)] && alike(row, rows.rows[static_cast<Index>(i)].q, close));
+      fresh = !(folds[static_cast<Index>(i)] && coincident(row, rows.rows[static_cast<Index>(i)].q, close));
     out.count += fresh || !folds[static_cast<Index>(k)] ? 1 : 0;
   }
   return out;

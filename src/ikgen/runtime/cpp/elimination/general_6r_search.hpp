@@ -241,7 +241,7 @@ inline void take_blurred(const Solutions& blurred, Solutions& out) noexcept {
   for (int k = 0; k < blurred.count; ++k) {
     const Solution& row = blurred.rows[static_cast<Index>(k)];
     bool fresh = true;
-    for (int i = 0; i < count; ++i) fresh = fresh && !alike(row.q, out.rows[static_cast<Index>(i)].q, nearby);
+    for (int i = 0; i < count; ++i) fresh = fresh && !coincident(row.q, out.rows[static_cast<Index>(i)].q, nearby);
     if (fresh) keep(row, out);
   }
 }

@@ -17,6 +17,7 @@ namespace elimination {
 inline constexpr int kRoom = 64;  // a continuum gives more than the 16 that are apart
 
 inline constexpr double kVerified = 0.5e-9;  // of the pose that a row reaches, lengths over the arm's
+inline constexpr double kCoincidentRows = 1e-6;  // rad: closer ones are one
 
 struct Solution {
   double q[6], c[6], s[6];  // angles in (-pi, pi], their cosines and sines; lengths of slides
@@ -27,9 +28,9 @@ struct Solutions {
   std::array<Solution, std::size_t{kRoom}> rows;
 };
 
-// Whether two configurations are one, to 1e-6 rad or within `reach`; slides longer than any angle count relative to
-// their length.
-inline bool alike(const double* a, const double* b, double reach = 1e-6) noexcept {
+// Whether two configurations are one to within `reach` (rad); slides longer than any angle count relative to their
+// length.
+inline bool coincident(const double* a, const double* b, double reach = kCoincidentRows) noexcept {
   for (int i = 0; i < 6; ++i) {
     double gap = std::abs(a[i] - b[i]);
     if (gap > 3.0) gap = std::abs(gap - 2.0 * kPi);
@@ -40,7 +41,7 @@ inline bool alike(const double* a, const double* b, double reach = 1e-6) noexcep
 
 inline bool holds(const Solutions& all, const double* q) noexcept {
   for (int k = 0; k < all.count; ++k)
-    if (alike(q, all.rows[static_cast<Index>(k)].q)) return true;
+    if (coincident(q, all.rows[static_cast<Index>(k)].q)) return true;
   return false;
 }
 

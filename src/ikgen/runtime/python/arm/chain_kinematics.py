@@ -68,7 +68,7 @@ def chain_of(frames: Array, motions: tuple[Motion, ...], dof: int) -> Chain:
     scale, offset = (np.array([m[i] for m in motions]) for i in (2, 3))
     slides = tuple(i for i, m in enumerate(motions) if not m[1])
     drive = scale[:, None] * (joint[:, None] == np.arange(dof))
-    alike = np.array_equal(drive, np.eye(dof))
+    direct = np.array_equal(drive, np.eye(dof))
     return Chain(
         frames,
         motions,
@@ -78,7 +78,7 @@ def chain_of(frames: Array, motions: tuple[Motion, ...], dof: int) -> Chain:
         scale,
         offset,
         slides,
-        None if alike else drive,
+        None if direct else drive,
         dof,
     )
 

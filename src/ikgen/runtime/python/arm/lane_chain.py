@@ -26,7 +26,7 @@ class LaneChain:
 
     `task`: what counts of its tip's pose. A link: whether it turns, cosine and sine of a slide's u, x, y,
     cosine and sine of the twist. Its value, u or of a slide v, is `scale * q[joint] + offset` (n, 1);
-    `alike`: whether that is `q + offset`.
+    `direct`: whether that is `q + offset`.
     """
 
     task: LaneTask
@@ -36,11 +36,11 @@ class LaneChain:
     offset: Array
     links: tuple[Link, ...]
     last: Array
-    alike: bool
+    direct: bool
 
     def changes(self, d: Array) -> Array:
         """The changes (n, k) of the links' values that changes d (dof, k) of the joints are."""
-        return d if self.alike else np.asarray(d[list(self.joint)] * self.scale)
+        return d if self.direct else np.asarray(d[list(self.joint)] * self.scale)
 
 
 _PARTS = 2048  # of a turn: what is left of an angle is at most 1.6e-3 rad
@@ -138,7 +138,7 @@ def lane_jacobian(chain: LaneChain, tip: Array, axes: Single, dof: int) -> Singl
     for i, (turns, *_) in enumerate(chain.links):
         if not turns:
             J[i, :3], J[i, 3:] = z[i], 0.0
-    if chain.alike:
+    if chain.direct:
         return J
     J *= chain.scale[:, :, None]
     out = np.zeros((dof, *J.shape[1:]), dtype=np.float32)
