@@ -33,7 +33,7 @@ _COARSE = 1e-9
 def lower(graph: SolutionGraph, *, model_error: float = 0.0) -> Program:
     """The Program of a solution graph.
 
-    `model_error` is how far (m or rad) the file's geometry is off the exact one that was solved: square
+    `model_error` is how far (m or rad) the file's geometry may be off the exact one that was solved: square
     roots and the final check give way by that much, and rows are refined on the file's chain.
     """
     work = Placement(graph, model_error)
