@@ -12,7 +12,7 @@ from tests.support.made_programs import made_module, with_limits
 
 from ikgen.elimination.parallel_plans import ParallelKind
 from ikgen.emit import moveit
-from ikgen.emit.blanks import pairs
+from ikgen.emit.blanks import blank_functions
 from ikgen.emit.cpp.cpp_emitter import (
     _depth_first,
     _elimination,
@@ -29,6 +29,7 @@ from ikgen.emit.solver_module import SolverModule, most_rows
 from ikgen.emit.twist_numbers import twist_numbers
 from ikgen.errors import UsageError
 from ikgen.kinematics.twist_links import twist_chain
+from ikgen.model.angle_function import cosine_and_sine
 from ikgen.model.dh import ARM_ANGLE_OPTION, Angle, DHRow
 from ikgen.program.policy import SolvePolicy
 
@@ -228,7 +229,7 @@ def test_a_plugin_turns_what_is_not_held(free: tuple[str, ...], turning: list[in
 
 def test_angles_to_fill_in_are_those_without_numbers() -> None:
     module = made_module()
-    assert pairs(module) == ()
+    assert blank_functions(module) == ()
     first, second, third = module.dh.rows
     shared = Angle(0.3, None, "alpha_1", symbolic=True)
     rows = (
@@ -238,7 +239,8 @@ def test_angles_to_fill_in_are_those_without_numbers() -> None:
         ),
         replace(third, theta=Angle(0.2, None, "theta_3", symbolic=True), alpha=shared),
     )
-    assert pairs(replace(module, dh=replace(module.dh, rows=rows))) == ("alpha_1", "theta_3")
+    found = blank_functions(replace(module, dh=replace(module.dh, rows=rows)))
+    assert found == (*cosine_and_sine("alpha_1"), *cosine_and_sine("theta_3"))
 
 
 def test_what_was_chosen_to_be_held_is_said_with_what_came_next() -> None:

@@ -14,6 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ikgen.model.angle_function import AngleFunction
+
 __all__ = ["BINARY", "UNARY", "Atom", "Expr", "Probe"]
 
 Probe = NDArray[np.float64]
@@ -34,8 +36,8 @@ class Expr:
     """A node: operation, arguments, probe values. Compare by identity; made by `NodeTable` only."""
 
     __slots__ = (
-        "_vanishes", "args", "atom", "id", "is_const", "is_fixed", "name", "op", "probe", "scale",
-        "support", "value",
+        "_vanishes", "args", "atom", "function", "id", "is_const", "is_fixed", "name", "op", "probe",
+        "scale", "support", "value",
     )  # fmt: skip
 
     def __init__(
@@ -49,6 +51,7 @@ class Expr:
         self.value = 0.0
         self.name = ""
         self.atom: Atom | None = None
+        self.function: AngleFunction | None = None  # of a constant angle, which a parameter may be
         self.id = -1
         self._vanishes: bool | None = None  # not yet asked
         self.is_fixed: bool = op != "atom" and all(a.is_fixed for a in args)

@@ -8,6 +8,7 @@ from typing import TypeVar
 import numpy as np
 
 from ikgen.algebra.expression import BINARY, UNARY, Atom, Expr, Probe
+from ikgen.model.angle_function import AngleFunction
 
 __all__ = ["NodeTable"]
 
@@ -49,15 +50,19 @@ class NodeTable:
         node.value = value
         return self._register(key, node)
 
-    def param(self, name: str, value: float, probe: Probe | None = None) -> Expr:
-        """A named constant of the arm, such as `a_2`, with its value attached. `probe` are its values at
-        the probes where they are others: any that the structure allows, then the one that was meant."""
-        key = ("param", name)
+    def param(self, symbol: str | AngleFunction, value: float, probe: Probe | None = None) -> Expr:
+        """A named constant of the arm, such as `a_2` or the cosine of `alpha_2`, with its value attached.
+        `probe` are its values at the probes where they are others: any that the structure allows, then the
+        one that was meant."""
+        key = ("param", symbol)
         if key in self._nodes:
             return self._nodes[key]
         at = np.full(self.probes, value) if probe is None else np.array(probe, dtype=float)
         node = Expr("param", (), at, float(np.max(np.abs(at))) if len(at) else abs(value), 0)
-        node.name = name
+        if isinstance(symbol, AngleFunction):
+            node.name, node.function = symbol.name, symbol
+        else:
+            node.name = symbol
         node.value = value
         return self._register(key, node)
 

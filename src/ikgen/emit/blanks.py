@@ -7,8 +7,9 @@ from dataclasses import dataclass
 
 from ikgen.emit.solver_module import SolverModule
 from ikgen.errors import UsageError
+from ikgen.model.angle_function import AngleFunction, cosine_and_sine
 
-__all__ = ["Blank", "blanks", "pairs"]
+__all__ = ["Blank", "blank_functions", "blanks"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +40,8 @@ def blanks(module: SolverModule) -> tuple[Blank, ...]:
     return tuple(Blank(n, samples[n] if module.sample else math.nan, samples[n]) for n in names)
 
 
-def pairs(module: SolverModule) -> tuple[str, ...]:
-    """Names of the angles to fill in: their cosines and sines are constants of the program."""
+def blank_functions(module: SolverModule) -> tuple[AngleFunction, ...]:
+    """Cosine and sine of every angle to fill in: constants of the program that follow from it."""
     parts = [x for row in module.dh.rows for x in (row.alpha, row.theta)]
-    return tuple(dict.fromkeys(x.name for x in parts if x.symbolic and x.name is not None))
+    angles = dict.fromkeys(x.name for x in parts if x.symbolic and x.name is not None)
+    return tuple(f for angle in angles for f in cosine_and_sine(angle))

@@ -23,6 +23,7 @@ from ikgen.equations.known_combinations import LARGEST
 from ikgen.errors import UnsupportedJointError
 from ikgen.kinematics.fixed_order import cosines, product, sines
 from ikgen.kinematics.rigid import exact_cos_sin
+from ikgen.model.angle_function import cosine_and_sine
 from ikgen.model.dh import Angle, DHChain, DHRow, Length
 
 __all__ = ["JointVariables", "runs_of"]
@@ -170,7 +171,7 @@ class JointVariables:
         c, s = exact_cos_sin(angle.value)
         if angle.name is None:
             return g.const(c), g.const(s)
-        cosine, sine = f"cos_{angle.name}", f"sin_{angle.name}"
+        cosine, sine = cosine_and_sine(angle.name)
         probe = self.kept.get(angle.name)
         if probe is None:
             return g.param(cosine, c), g.param(sine, s)

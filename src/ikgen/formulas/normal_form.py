@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+
+from ikgen.model.angle_function import AngleFunction
 
 __all__ = [
     "Factor",
@@ -23,10 +25,12 @@ _NOTHING = 1e-14
 
 @dataclass(frozen=True, slots=True)
 class Symbol:
-    """A parameter ("param"), pose entry, cosine, sine or joint length; `key` as in `Atom`."""
+    """A parameter ("param"), pose entry, cosine, sine or joint length; `key` as in `Atom`. `function`: what
+    a parameter is of a constant angle; sums order symbols by the other two."""
 
     kind: str
     key: tuple[int, ...] | str
+    function: AngleFunction | None = field(default=None, repr=False)
 
 
 @dataclass(frozen=True, slots=True)

@@ -29,7 +29,7 @@ class Normalizer:
         if node.op == "const":
             return constant(node.value)
         if node.op == "param":
-            return single(Symbol("param", node.name))
+            return single(Symbol("param", node.name, node.function))
         if node.atom is not None:
             return single(Symbol(node.atom.kind, node.atom.key))
         parts = [self(a) for a in node.args]

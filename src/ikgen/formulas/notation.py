@@ -6,6 +6,7 @@ from ikgen.equations.knowledge import Variable
 from ikgen.formulas import mathtext as m
 from ikgen.formulas.mathtext import Math
 from ikgen.formulas.normal_form import Factor, Named, Radical, Sum, Symbol, Term
+from ikgen.model.angle_function import AngleFunction
 
 __all__ = ["angle", "quotient", "show", "symbol", "variable"]
 
@@ -49,7 +50,7 @@ def symbol(s: Symbol) -> Math:
     if isinstance(s.key, str):
         if s.kind == "pose":
             return m.name(s.key[0], s.key[1:])
-        return _parameter(s.key)
+        return _parameter(s.key) if s.function is None else _function(s.function)
     if s.kind == "prismatic":
         return m.name("d", str(s.key.index(1) + 1))
     index = _index(s.key)
@@ -58,10 +59,11 @@ def symbol(s: Symbol) -> Math:
     return m.join([m.text(s.kind), angle(s.key)])
 
 
+def _function(f: AngleFunction) -> Math:
+    return m.text(f"{f.function} ") + _parameter(f.angle)
+
+
 def _parameter(name: str) -> Math:
-    for word in ("cos", "sin"):
-        if name.startswith(f"{word}_"):
-            return m.text(f"{word} ") + _parameter(name[4:])
     base, _, index = name.rstrip("_").partition("_")
     return m.name(base, index.replace("_", ""))
 

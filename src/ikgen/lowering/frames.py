@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.equations.symbolic_transforms import Rigid, constant, multiply
+from ikgen.model.angle_function import cosine_and_sine
 from ikgen.model.dh import Angle, DHChain, DHRow, Length
 from ikgen.program.ops import Op, Operand
 from ikgen.program.statements import Entries
@@ -56,9 +57,10 @@ def _symbolic(before: NDArray[np.float64], row: DHRow) -> Entries:
 
 def _pair(g: ExpressionGraph, angle: Angle) -> tuple[Expr, Expr]:
     c, s = math.cos(angle.value), math.sin(angle.value)
-    if angle.symbolic:
-        return g.param(f"cos_{angle.name}", c), g.param(f"sin_{angle.name}", s)
-    return g.const(c), g.const(s)
+    if not angle.symbolic or angle.name is None:
+        return g.const(c), g.const(s)
+    cosine, sine = cosine_and_sine(angle.name)
+    return g.param(cosine, c), g.param(sine, s)
 
 
 def _length(g: ExpressionGraph, length: Length) -> Expr:

@@ -32,7 +32,7 @@ class _Serializer:
         self.uses: Counter[int] = Counter()
         self.names: dict[int, str] = dict(work.names)
         self.kept: set[int] = set()
-        self.parameters: dict[str, float] = {}
+        self.parameters: dict[str, Constant] = {}
         self.constants: list[Let] = []
         self.inline: dict[int, tuple[Operand, int]] = {}
         self.home: dict[int, int] = {}
@@ -87,7 +87,7 @@ class _Serializer:
         if node.is_const:
             return node.value
         if node.op == "param":
-            self.parameters[node.name] = node.value
+            self.parameters[node.name] = Constant(node.name, node.value, node.function)
             return node.name
         if node.is_fixed:
             return self._constant(node)
@@ -170,7 +170,7 @@ def serialize(work: Placement, values: list[tuple[int, Expr]]) -> Program:
     residuals = tuple(str(s.operand(e)) for e in work.residuals)
     return Program(
         work.dh.robot,
-        tuple(Constant(name, value) for name, value in s.parameters.items()),
+        tuple(s.parameters.values()),
         tuple(s.constants),
         tuple(work.inputs),
         tuple(work.prelude),

@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TypeVar
 
+from ikgen.model.angle_function import AngleFunction
 from ikgen.program.inputs import Input
 from ikgen.program.ops import Operand
 
@@ -90,10 +91,11 @@ class Level:
 
 @dataclass(frozen=True, slots=True)
 class Constant:
-    """A named number of the arm: a length (m), or the cosine or sine of an angle."""
+    """A named number of the arm: a length (m), or the cosine or sine of an angle, which `function` says."""
 
     name: str
     value: float
+    function: AngleFunction | None = None
 
 
 @dataclass(frozen=True, slots=True)

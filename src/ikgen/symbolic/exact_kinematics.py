@@ -34,7 +34,6 @@ class ExactKinematics:
         turning = [f"theta{j}" for j in joints if dh.lead_row(j).revolute]
         sliding = [f"slide{j}" for j in joints if not dh.lead_row(j).revolute]
         self.ring = ExactRing([*turning, *twists], [*sliding, *lengths])
-        self._lengths = frozenset(lengths)
         self.pose = self._pose(tool_on_right)
         self._done: dict[Expr, Ratio] = {}
 
@@ -117,7 +116,7 @@ class ExactKinematics:
         if node.is_const:
             return self.ring.number(node.value), one
         if node.op == "param":
-            return self._constant(node.name), one
+            return self._constant(node), one
         if node.atom is not None:
             return self._atom(node.atom), one
         return self._operation(node.op, [self(a) for a in node.args])
@@ -139,11 +138,11 @@ class ExactKinematics:
             return multiply(a, d), multiply(b, c)
         raise NotImplementedError(f"the operation {op} is not one of + - * /")
 
-    def _constant(self, name: str) -> Any:
-        if name in self._lengths:
-            return self.ring.free(name)
-        function, _, angle = name.partition("_")
-        return self.ring.pair(angle)[function == "sin"]
+    def _constant(self, node: Expr) -> Any:
+        f = node.function
+        if f is None:
+            return self.ring.free(node.name)
+        return self.ring.pair(f.angle)[f.function == "sin"]
 
     def _atom(self, atom: Atom) -> Any:
         r, key = self.ring, atom.key

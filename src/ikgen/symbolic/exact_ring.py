@@ -16,6 +16,7 @@ from typing import Any
 from sympy.polys.domains import QQ
 from sympy.polys.rings import ring
 
+from ikgen.model.angle_function import cosine_and_sine
 from ikgen.symbolic.exact_numbers import ROOTS, exact_number
 
 __all__ = ["ExactRing"]
@@ -29,12 +30,13 @@ class ExactRing:
     `inexact` gathers constants that no exact number was recognised in."""
 
     def __init__(self, angles: Sequence[str], free: Sequence[str]) -> None:
-        names = [f"{x}_{name}" for name in angles for x in ("cos", "sin")]
+        functions = {angle: cosine_and_sine(angle) for angle in angles}
+        names = [f.name for pair in functions.values() for f in pair]
         names += [*free, "root2", "root3"]
         made, *generators = ring(names, QQ)
         self.ring: Any = made
         gen: dict[str, Any] = dict(zip(names, generators, strict=True))
-        self._pairs = {name: (gen[f"cos_{name}"], gen[f"sin_{name}"]) for name in angles}
+        self._pairs = {angle: (gen[c.name], gen[s.name]) for angle, (c, s) in functions.items()}
         self._free = {name: gen[name] for name in free}
         self._roots: tuple[Any, ...] = gen["root2"], gen["root3"]
         last = len(names) - 1

@@ -46,17 +46,17 @@ class ExpressionView:
         if node.is_const:
             return exact_number(node.value).sympy
         if node.op == "param":
-            return self._constant(node.name)
+            return self._constant(node)
         if node.atom is not None:
             return self._atom(node.atom)
         return ARITHMETIC[node.op](*(self(a) for a in node.args))
 
-    def _constant(self, name: str) -> sympy.Expr:
+    def _constant(self, node: Expr) -> sympy.Expr:
         """A length, or the cosine or sine of a constant angle."""
-        if name in self.names.constants:
-            return self.names.constant(name)
-        function, _, angle = name.partition("_")
-        return {"cos": sympy.cos, "sin": sympy.sin}[function](self.names.constant(angle))
+        f = node.function
+        if f is None:
+            return self.names.constant(node.name)
+        return {"cos": sympy.cos, "sin": sympy.sin}[f.function](self.names.constant(f.angle))
 
     def _atom(self, atom: Atom) -> sympy.Expr:
         if isinstance(atom.key, str):

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from ikgen.elimination.elimination_table import ELIMINATIONS
-from ikgen.emit.blanks import blanks, pairs
+from ikgen.emit.blanks import blank_functions, blanks
 from ikgen.emit.cpp.cpp_language import CONSTANT, comment, declared, literal, number
 from ikgen.emit.cpp.cpp_policy import policy_lines
 from ikgen.emit.cpp.cpp_statements import ProgramText
@@ -109,7 +109,7 @@ def _shell(module: SolverModule, branches: list[int], most: int) -> str:
         blanks=blanks(module),
         **_elimination(module),
         **_refinement(module),
-        angles=[(f, n) for n in pairs(module) for f in ("cos", "sin")],
+        blank_functions=blank_functions(module),
         free_defaults=[number(x) for x in module.free_defaults],
         number=number,
         declared=declared,

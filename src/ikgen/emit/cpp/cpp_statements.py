@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import textwrap
 
-from ikgen.emit.blanks import pairs
+from ikgen.emit.blanks import blank_functions
 from ikgen.emit.cpp.cpp_language import CONSTANT, CPP, LINE, comment, number
 from ikgen.emit.printer import expression
 from ikgen.emit.solver_module import SolverModule
@@ -63,13 +63,12 @@ class ProgramText:
         return [(n, text[n] or number(v)) for n, v in self.fixed.items() if n in self.live]
 
     def _written_constants(self) -> list[tuple[str, str]]:
-        angles = {f"{f}_{n}" for n in pairs(self.module) for f in ("cos", "sin")}
         text = {p.name: number(p.value) for p in self.program.parameters if p.name in self.live}
         lets = [s for lv in self.program.levels for s in lv.body if isinstance(s, Let)]
         for let in (*self.program.constants, *lets):
             if let.name in self.fixed and let.name in self.live:
                 text[let.name] = expression(CONSTANT, let.value)
-        above = {*self.module.dh.symbols, *angles}
+        above = {*self.module.dh.symbols, *(f.name for f in blank_functions(self.module))}
         return [(n, t) for n, t in text.items() if n not in above]
 
     # -- statements -----------------------------------------------------------------------------

@@ -6,7 +6,7 @@ from dataclasses import fields
 from typing import TYPE_CHECKING, Any
 
 from ikgen.elimination.routine import runtime_policy
-from ikgen.emit.blanks import blanks, pairs
+from ikgen.emit.blanks import blank_functions, blanks
 from ikgen.emit.elbow_text import elbow_text
 from ikgen.emit.gear_text import gear_text
 from ikgen.emit.printer import expression
@@ -152,12 +152,10 @@ def _policy_values(policy: Policy) -> list[tuple[str, str]]:
 
 def _parameters(module: SolverModule) -> list[tuple[str, str]]:
     """Name and text of the arm's constants but those to be filled in."""
-    angles = {f"{f}_{n}": f"{f}({n})" for n in pairs(module) for f in ("cos", "sin")}
-    given = [
-        (p.name, p.value) for p in module.program.parameters if p.name not in module.dh.symbols
-    ]
-    plain = [(n, number(v)) for n, v in given if n not in angles]
-    return [*angles.items(), *plain]
+    functions = blank_functions(module)
+    given = [p for p in module.program.parameters if p.name not in module.dh.symbols]
+    plain = [(p.name, number(p.value)) for p in given if p.function not in functions]
+    return [*((f.name, f"{f.function}({f.angle})") for f in functions), *plain]
 
 
 def _seed_rows(module: SolverModule) -> list[tuple[int, bool, float, float]]:
