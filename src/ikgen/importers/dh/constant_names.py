@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from ikgen.importers.dh.entry_expression import Quantity
 from ikgen.kinematics.snapping import SnapLog, exact_angle, tidy, wrap_angle
+from ikgen.model.angle_function import cosine_and_sine
 from ikgen.model.dh import Angle, Length
 
 __all__ = ["SymbolTable", "symbol_of"]
@@ -64,11 +65,16 @@ class SymbolTable:
         key: object = (q.terms, round(q.constant, 12))
         if q.single is not None and q.single[1] > 0:
             place, key = symbol_of(q.single[0]), ("user", q.single[0])
-        symbol = next((s for s, k in self.names.items() if k == key), "")
-        return Angle(wrap_angle(q.value), None, symbol or self._claim(place, key), q.symbolic)
+        symbol = next((s for s, k in self.names.items() if k == key), place)
+        return Angle(wrap_angle(q.value), None, self._claim(symbol, key, turns=True), q.symbolic)
 
-    def _claim(self, symbol: str, key: object) -> str:
-        """The symbol, with underscores where another quantity has it."""
-        while self.names.setdefault(symbol, key) != key:
+    def _claim(self, symbol: str, key: object, *, turns: bool = False) -> str:
+        """The symbol, with underscores where another quantity has it, or what `turns` needs besides: the
+        names of its cosine and sine."""
+        while True:
+            functions = cosine_and_sine(symbol) if turns else ()
+            needed: dict[str, object] = {symbol: key, **{f.name: f for f in functions}}
+            if all(self.names.get(name, what) == what for name, what in needed.items()):
+                self.names.update(needed)
+                return symbol
             symbol += "_"
-        return symbol
