@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.solver.test_leaves import CASES
+from tests.solver.leaves.test_leaves import CASES
 from tests.support.solving import import_text, module_of
 from tests.support.tables import table
 

@@ -227,7 +227,7 @@ def test_public_names_of_a_module_are_those_of_the_contract(tmp_path: Path) -> N
 
 
 def test_an_emitted_module_needs_no_ikgen(tmp_path: Path) -> None:
-    root = Path(__file__).resolve().parents[2]
+    root = Path(__file__).resolve().parents[3]
     text = emit_module(derive(Request(root / "urdf_fixtures/ur5e.urdf")).module)
     imported = {n.module for n in ast.walk(ast.parse(text)) if isinstance(n, ast.ImportFrom)}
     assert not any((name or "").startswith("ikgen") for name in imported)

@@ -28,7 +28,7 @@ from ikgen.records.request import Request
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 Both = tuple[ModuleType, ModuleType]
 
 

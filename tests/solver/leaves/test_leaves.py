@@ -20,7 +20,7 @@ from ikgen.report.leaf_words import leaf_sentence
 from ikgen.solver.leaves import LEAVES, Find, Leaf
 from ikgen.solver.solve import solve_chain
 
-TABLES = Path(__file__).resolve().parents[1] / "robots/tables"
+TABLES = Path(__file__).resolve().parents[2] / "robots/tables"
 SPHERICAL = (("R", "-1", 0.0, 0.4), ("R", "1", 0.0, 0.0), ("R", "-1", 0.0, 0.0))
 CASES: dict[str, tuple[set[str], tuple[Row, ...]]] = {
     "two sliding joints": (

@@ -18,7 +18,7 @@ from ikgen.verify.runners.cpp_toolchain import find_compiler, find_eigen
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 
-FIXTURES = Path(__file__).resolve().parents[2] / "urdf_fixtures"
+FIXTURES = Path(__file__).resolve().parents[3] / "urdf_fixtures"
 STRICT = "-Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow -Werror"
 DEBUG = (
     "-DCMAKE_BUILD_TYPE=Debug",

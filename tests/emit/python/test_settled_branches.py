@@ -21,7 +21,7 @@ from ikgen.records.request import Request
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 
-TABLES = Path(__file__).resolve().parents[1] / "robots" / "tables"
+TABLES = Path(__file__).resolve().parents[2] / "robots" / "tables"
 REQUESTS = {
     "exact": Request(FIXTURES / "kuka_kr6r900sixx.urdf"),
     "held": Request(FIXTURES / "franka_fr3.urdf", free={"fr3_joint7": None}),
