@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.support.module_facts import module_around
 from tests.support.solving import import_text
 from tests.support.tables import Row, table
 
@@ -31,10 +32,7 @@ def solver_module(slide: int | None, *, both: bool = False) -> SolverModule:
     resultants = ((0, 0),) if slide is None else ()
     plan = EliminationPlan(frames, length, ((1, 0, 0),), 1.0, resultants, turning, both=both)
     program = elimination_program(dh, 16, both=both)
-    return SolverModule(
-        name="arm", program=program, dh=dh, task="pose", free_defaults=(),
-        source_name="arm.toml", source_sha256="0" * 64, generator_version="test", plan=plan,
-    )  # fmt: skip
+    return module_around(program, dh, plan=plan)
 
 
 @pytest.mark.parametrize(

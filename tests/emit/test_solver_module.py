@@ -6,8 +6,8 @@ import math
 from types import SimpleNamespace
 
 import pytest
+from tests.support.module_facts import module_around
 
-from ikgen.emit.solver_module import SolverModule
 from ikgen.program.policy import SolvePolicy
 
 
@@ -24,11 +24,8 @@ from ikgen.program.policy import SolvePolicy
 def test_rows_of_rounded_files_are_refined(
     deviation: float, plan: object, rounded: bool, rough: bool, far: bool
 ) -> None:
-    dh = SimpleNamespace(deviation=(0.0, deviation), most_driven=1.0)
-    module = SolverModule(
-        name="arm", program=None, dh=dh, task="pose", free_defaults=(),
-        source_name="", source_sha256="", generator_version="", plan=plan,
-    )  # fmt: skip
+    dh = SimpleNamespace(deviation=(0.0, deviation), most_driven=1.0, held=())
+    module = module_around(None, dh, plan=plan)
     policy = SolvePolicy()
     assert (module.rounded, module.tells_rough, module.far) == (rounded, rough, far)
     near = policy.fold * math.sqrt(deviation)
@@ -39,9 +36,6 @@ def test_rows_of_rounded_files_are_refined(
 
 
 def test_a_joint_that_moves_the_tool_several_times_as_far_is_put_on_limits_from_less_far() -> None:
-    dh = SimpleNamespace(deviation=(0.0, 0.0), most_driven=4.0)
-    module = SolverModule(
-        name="arm", program=None, dh=dh, task="pose", free_defaults=(),
-        source_name="", source_sha256="", generator_version="",
-    )  # fmt: skip
+    dh = SimpleNamespace(deviation=(0.0, 0.0), most_driven=4.0, held=())
+    module = module_around(None, dh)
     assert module.policy.limit_tolerance == SolvePolicy().limit_tolerance / 4.0

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from tests.support.module_facts import module_around
+
 from ikgen.derivation.read import read
 from ikgen.emit.solver_module import SolverModule
 from ikgen.lowering.lower import lower
@@ -41,13 +43,5 @@ def solver_module(name: str) -> SolverModule:
     dh = read(Request(robot_file(name))).dh
     graph = solve.solve_chain(dh)
     assert not graph.open_joints
-    return SolverModule(
-        name=name.lower().replace("-", "_"),
-        program=lower(graph, model_error=2.0 * max(dh.deviation)),
-        dh=dh,
-        task="pose",
-        free_defaults=(),
-        source_name=f"{name}.urdf",
-        source_sha256="0" * 64,
-        generator_version="test",
-    )
+    program = lower(graph, model_error=2.0 * max(dh.deviation))
+    return module_around(program, dh, name=name.lower().replace("-", "_"))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from tests.support.module_facts import module_around
 from tests.support.tables import table
 
 from ikgen.emit.solver_module import SolverModule
@@ -78,7 +79,7 @@ def made_module() -> SolverModule:
     """Of `made_program`, with a chain of two turning joints and a sliding one that is held."""
     dh = table(("R", "0", 0.0, 0.0), ("R", "1", 0.5, 0.0), ("P", "1", 0.0, 0.0))
     dh = replace(dh, free=("q2",))
-    return SolverModule("made", made_program(), dh, "position", (0.0,), "made", "0" * 64, "0")
+    return module_around(made_program(), dh, name="made", task="position")
 
 
 def with_limits(module: SolverModule, *limits: tuple[float, float]) -> SolverModule:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 import numpy as np
+from tests.support.module_facts import module_around
 
 from ikgen.emit.solver_module import SolverModule
 from ikgen.kinematics.forward import row_constant
@@ -56,6 +57,4 @@ def pan_lift() -> SolverModule:
         singular=(),
         frames=file_frames(dh),
     )  # fmt: skip
-    return SolverModule(
-        "pan_lift", program, dh, "position", (), "pan_lift.urdf", "0" * 64, "0", "pan and lift"
-    )
+    return module_around(program, dh, name="pan_lift", task="position", geometry="pan and lift")

@@ -8,6 +8,8 @@ import sys
 from pathlib import Path
 from types import ModuleType
 
+from tests.support.module_facts import module_around
+
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.emit.solver_module import SolverModule
 from ikgen.errors import MissingToolError
@@ -37,7 +39,7 @@ def module_of(dh: DHChain, graph: SolutionGraph, *, name: str = "arm") -> Solver
     """The solver module of a solution graph, free joints at 0."""
     assert not graph.open_joints
     program = lower(graph, model_error=2.0 * max(dh.deviation))
-    return SolverModule(name, program, dh, "pose", (0.0,) * len(dh.held), "test", "0" * 64, "0")
+    return module_around(program, dh, name=name)
 
 
 def import_text(text: str, folder: Path) -> ModuleType:
