@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 from tests.support.constructed import Constructed
 
 from ikgen.algebra.expression import Expr
+from ikgen.equations.knowledge import Variable
 from ikgen.forms.form import Form
 from ikgen.solver.candidate import Candidate
 from ikgen.solver.choice import Chooser, Step
@@ -140,3 +144,14 @@ def test_six_that_fail_where_no_probe_is_are_enough(arm: Constructed, hidden: in
     step = choose(arm, *others, sound, ranked=False)
     assert step is not None and (step.candidate is sound) == (hidden < 6)
     assert bool(step.fallbacks) == (hidden == 6)
+
+
+def test_where_branches_meet_is_remembered_by_unknown(arm: Constructed) -> None:
+    """One form for two angles, though it is true of the first alone: it folds where that, or the other, is
+    the second angle or opposite to it."""
+    chooser, first = Chooser(arm.system, arm.probes), arm.candidate(arm.folding())
+    other = replace(first, unknown=Variable("angle", (0, 0, 1)))
+    for candidate, joint in ((first, 0), (other, 2)):
+        at = chooser._weak_at(candidate)
+        assert len(at)
+        np.testing.assert_allclose(np.sin(at[:, joint] - at[:, 1]), 0.0, atol=2e-3)

@@ -47,7 +47,7 @@ class Chooser:
     def __init__(self, system: EquationSet, probes: Probes) -> None:
         self._system = system
         self._probes = probes
-        self._weak: dict[tuple[object, ...], NDArray[np.float64]] = {}
+        self._weak: dict[tuple[Variable, tuple[object, ...]], NDArray[np.float64]] = {}
 
     def choose(self, ranked: list[Candidate], *, anything: bool) -> Step | None:
         """The best candidate that holds at every regular configuration, alone or with fallbacks where
@@ -69,7 +69,8 @@ class Chooser:
 
     def _weak_at(self, candidate: Candidate) -> NDArray[np.float64]:
         """Regular configurations where a candidate fails, sought once."""
-        key = (candidate.form.name, *(e.id for e in candidate.coefficients))
+        form = (candidate.form.name, *(e.id for e in candidate.coefficients))
+        key = (candidate.unknown, form)  # where branches meet follows from both
         if key not in self._weak:
             found = weak_configurations(candidate, self._system, self._probes)
             special = self._probes.values[: self._probes.regular]
