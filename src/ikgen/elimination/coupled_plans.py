@@ -38,7 +38,7 @@ from ikgen.runtime.python.elimination.coupled_angle import (
 __all__ = ["choose_coupled"]
 
 _ALL_TURN = (True,) * 6
-_MOST_DEGREE = 32
+_MOST_DEGREE = 40
 _NODES = 128
 _POSES = 8
 _PROBES = 24

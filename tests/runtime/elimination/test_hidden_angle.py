@@ -51,3 +51,8 @@ def test_rows_times_half_angles_are_rows_in_these() -> None:
     assert lift(A).shape == (4, 5, 6, 12)
     np.testing.assert_allclose(found[..., :3], np.cos(0.5 * angle) * (A @ whole), atol=1e-14)
     np.testing.assert_allclose(found[..., 3:], np.sin(0.5 * angle) * (A @ whole), atol=1e-14)
+
+
+def test_no_rows_are_lifted_to_none() -> None:
+    assert lift(np.zeros((0, 26, 6, 9))).shape == (0, 26, 12, 12)
+    assert lift(np.zeros((4, 0, 6, 9))).shape == (4, 0, 12, 12)

@@ -57,7 +57,7 @@ def lift(A: Array) -> Array:
     (..., 2r, 12) in (cos h, sin h, cos 3h, sin 3h) x (1, c', s')."""
     out = np.empty((*A.shape[:-2], 2, A.shape[-2], 12))
     np.matmul(A[..., None, :, :], _LIFT, out=out)
-    return out.reshape(*A.shape[:-2], -1, 12)
+    return out.reshape(*A.shape[:-2], 2 * A.shape[-2], 12)
 
 
 def loop_resultant(E: Array, left: Array) -> Resultant:
