@@ -3300,6 +3300,72 @@ inline Walk follow_poses(const Eigen::Isometry3d* poses, std::ptrdiff_t count, c
   return out;
 }
 
+// --- least eigenvalue ----------------------------------------------------------------------------
+template <class Pack, int N>
+inline void tridiagonal(Pack (&S)[N][N], Pack (&diagonal)[N], Pack (&squares)[N]) noexcept {
+  squares[0] = spread<kWidth<Pack>>(0.0);
+  for (int k = 0; k < N; ++k) {
+    diagonal[k] = S[k][k];
+    if (k + 1 == N) return;
+    Pack v[N], w[N], length = spread<kWidth<Pack>>(0.0), product = length;
+    for (int i = k + 1; i < N; ++i) {
+      v[i] = S[i][k];
+      length = length + v[i] * v[i];
+    }
+    squares[k + 1] = length;
+    if (k + 2 == N) continue;
+    const Pack root = sqrt(length), turned = select(v[k + 1] > 0.0, root, -root);
+    const Pack scale = 1.0 / max(length + abs(v[k + 1]) * root, 1e-300);
+    v[k + 1] = v[k + 1] + turned;
+    for (int i = k + 1; i < N; ++i) {
+      w[i] = spread<kWidth<Pack>>(0.0);
+      for (int j = k + 1; j < N; ++j) w[i] = w[i] + S[i][j] * v[j];
+      w[i] = scale * w[i];
+      product = product + w[i] * v[i];
+    }
+    product = 0.5 * scale * product;
+    for (int i = k + 1; i < N; ++i) w[i] = w[i] - product * v[i];
+    for (int i = k + 1; i < N; ++i)
+      for (int j = k + 1; j <= i; ++j) {
+        S[i][j] = S[i][j] - (v[i] * w[j] + w[i] * v[j]);
+        S[j][i] = S[i][j];
+      }
+  }
+}
+
+template <class Pack, int N> inline Pack least_root(const Pack (&diagonal)[N], const Pack (&squares)[N]) noexcept {
+  constexpr int kSteps = 40;
+  constexpr double n = N;
+  Pack x = spread<kWidth<Pack>>(0.0), last = x;
+  for (int i = 0; i < kSteps; ++i) {
+    Pack p = diagonal[0] - x, before = spread<kWidth<Pack>>(1.0), d = -before, d_before = before - 1.0, h = d_before, h_before = h;
+    for (int k = 1; k < N; ++k) {
+      const Pack at = diagonal[k] - x;
+      const Pack next = at * p - squares[k] * before, d_next = at * d - p - squares[k] * d_before;
+      const Pack h_next = at * h - 2.0 * d - squares[k] * h_before;
+      before = p;
+      d_before = d;
+      h_before = h;
+      p = next;
+      d = d_next;
+      h = h_next;
+    }
+    const auto left = (p > 0.0) & (0.0 > d);  // of all roots
+    const Pack over = 1.0 / select(left, p, 1.0), g = -d * over;
+    const Pack step = n / (g + sqrt((n - 1.0) * ((n - 1.0) * g * g - n * h * over)));
+    x = x + select(left, step, 0.0);
+    if (all(!(left & (step * step > 1e-15 * x * last)))) break;
+    last = step;
+  }
+  return x;
+}
+
+template <class Pack, int N> inline Pack least_eigenvalue(Pack (&S)[N][N]) noexcept {
+  Pack diagonal[N], squares[N];
+  tridiagonal(S, diagonal, squares);
+  return least_root(diagonal, squares);
+}
+
 // --- least singular value ------------------------------------------------------------------------
 template <class Arm, int N> struct LeastSingularValue {
   using Pack = Lanes<N>;
@@ -3320,13 +3386,11 @@ template <class Arm, int N> struct LeastSingularValue {
       }
     if constexpr (kDependent) Arm::Task::fill(T, kFar, S);
     if constexpr (kInPlane) return sqrt(max(eigenvalue<kOrder - kRank>(S), 0.0));
-    Pack diagonal[kOrder], squares[kOrder];
-    reduce(S, diagonal, squares);
-    return sqrt(least_root(diagonal, squares));
+    return sqrt(least_eigenvalue(S));
   }
 
  private:
-  static constexpr int kRows = Arm::Task::kCount, kLess = Arm::kDof < kRows ? Arm::kDof : kRows, kSteps = 40;
+  static constexpr int kRows = Arm::Task::kCount, kLess = Arm::kDof < kRows ? Arm::kDof : kRows;
   static constexpr int kRank = AllMoving<Arm>::kRank;
   static constexpr bool kInPlane =  // all joints move fewer freedoms
       kRank < kLess && (Arm::kWholePose || kRank < kRows - Arm::Columns::kRelations);
@@ -3334,63 +3398,6 @@ template <class Arm, int N> struct LeastSingularValue {
   static constexpr int kOrder = kDependent ? kRows : kLess;
   static constexpr bool kByRows = kOrder == kRows;
   static constexpr double kFar = 1e4;  // above the least
-
-  static void reduce(Pack (&S)[kOrder][kOrder], Pack (&diagonal)[kOrder], Pack (&squares)[kOrder]) noexcept {
-    squares[0] = spread<N>(0.0);
-    for (int k = 0; k < kOrder; ++k) {
-      diagonal[k] = S[k][k];
-      if (k + 1 == kOrder) return;
-      Pack v[kOrder], w[kOrder], length = spread<N>(0.0), product = length;
-      for (int i = k + 1; i < kOrder; ++i) {
-        v[i] = S[i][k];
-        length = length + v[i] * v[i];
-      }
-      squares[k + 1] = length;
-      if (k + 2 == kOrder) continue;
-      const Pack root = sqrt(length), turned = select(v[k + 1] > 0.0, root, -root);
-      const Pack scale = 1.0 / max(length + abs(v[k + 1]) * root, 1e-300);
-      v[k + 1] = v[k + 1] + turned;
-      for (int i = k + 1; i < kOrder; ++i) {
-        w[i] = spread<N>(0.0);
-        for (int j = k + 1; j < kOrder; ++j) w[i] = w[i] + S[i][j] * v[j];
-        w[i] = scale * w[i];
-        product = product + w[i] * v[i];
-      }
-      product = 0.5 * scale * product;
-      for (int i = k + 1; i < kOrder; ++i) w[i] = w[i] - product * v[i];
-      for (int i = k + 1; i < kOrder; ++i)
-        for (int j = k + 1; j <= i; ++j) {
-          S[i][j] = S[i][j] - (v[i] * w[j] + w[i] * v[j]);
-          S[j][i] = S[i][j];
-        }
-    }
-  }
-
-  static Pack least_root(const Pack (&diagonal)[kOrder], const Pack (&squares)[kOrder]) noexcept {
-    Pack x = spread<N>(0.0), last = x;
-    for (int i = 0; i < kSteps; ++i) {
-      Pack p = diagonal[0] - x, before = spread<N>(1.0), d = spread<N>(-1.0), d_before = spread<N>(0.0), h = d_before, h_before = h;
-      for (int k = 1; k < kOrder; ++k) {
-        const Pack at = diagonal[k] - x;
-        const Pack next = at * p - squares[k] * before, d_next = at * d - p - squares[k] * d_before;
-        const Pack h_next = at * h - 2.0 * d - squares[k] * h_before;
-        before = p;
-        d_before = d;
-        h_before = h;
-        p = next;
-        d = d_next;
-        h = h_next;
-      }
-      constexpr double n = kOrder;
-      const auto left = (p > 0.0) & (0.0 > d);  // of all roots
-      const Pack over = 1.0 / select(left, p, 1.0), g = -d * over;
-      const Pack step = n / (g + sqrt((n - 1.0) * ((n - 1.0) * g * g - n * h * over)));
-      x = x + select(left, step, 0.0);
-      if (all(!(left & (step * step > 1e-15 * x * last)))) break;
-      last = step;
-    }
-    return x;
-  }
 };
 
 // --- row preference ------------------------------------------------------------------------------
