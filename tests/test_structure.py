@@ -68,7 +68,8 @@ def test_functions_of_the_cpp_runtime_are_short() -> None:
 def test_headers_include_what_the_layers_of_their_folders_allow() -> None:
     contracts = ConfigParser()
     contracts.read(ROOT / ".importlinter", encoding="utf-8")
-    layers = contracts["importlinter:contract:runtime"]["layers"].split()
+    contract = contracts["importlinter:contract:runtime"]
+    layers = [name.strip("()") for name in contract["layers"].split()]
     up = [
         f"{path.parent.name}/{path.name}: {folder}"
         for path in RUNTIME.rglob("*.hpp")

@@ -116,7 +116,7 @@ def test_compiled_and_interpreted_maps_agree_and_workers_do_not_matter() -> None
     assert archive(one) == archive(two)
     assert (one.count != by_numpy().count).mean() < 2e-3  # poses on the boundary of the reach
     same = one.count == by_numpy().count
-    np.testing.assert_allclose(one.sigma[same], by_numpy().sigma[same], rtol=2e-3, atol=2e-4)
+    np.testing.assert_allclose(one.sigma[same], by_numpy().sigma[same], rtol=1e-5, atol=1e-6)
     np.testing.assert_allclose(one.margin[same], by_numpy().margin[same], atol=1e-5)
 
 

@@ -20,7 +20,7 @@ def map_driver(
         "map.cpp.jinja",
         header=f"{module.name}_ik.hpp",
         namespace=f"{module.name}_ik",
-        runtime=bundle(["arm/lane_chain.hpp"]),
+        runtime=bundle(["reach/solved_block.hpp"]),
         chain=twist_lines(module),
         rows=rows,
         moving=moving,
