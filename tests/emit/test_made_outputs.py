@@ -193,7 +193,8 @@ def test_a_module_is_guarded_where_no_routine_gives_its_branches() -> None:
 def test_a_planning_group_has_the_solver_s_joints_or_those_of_the_chain() -> None:
     module = made_module()
     assert moveit._group(module, None) == {
-        "group": [("q0", 0, 1.0, 0.0), ("q1", 1, 1.0, 0.0), ("q2", 2, 1.0, 0.0)], "places": [0, 1, 2],
+        "group": [("q0", 0, 1.0, 0.0), ("q1", 1, 1.0, 0.0), ("q2", 2, 1.0, 0.0)],
+        "places": [0, 1, 2], "held_places": [2],
     }  # fmt: skip
     axes = [
         SimpleNamespace(name=name, driver=driver, multiplier=k, offset=c)
@@ -203,6 +204,8 @@ def test_a_planning_group_has_the_solver_s_joints_or_those_of_the_chain() -> Non
     ]  # fmt: skip
     found = moveit._group(module, SimpleNamespace(axes=axes, file_axes=()))
     assert found["places"] == [0, 2, 3] and found["group"][1] == ("copy", 0, -2.0, 0.5)
+    held = moveit._group(holding("q1", "q2"), SimpleNamespace(axes=axes, file_axes=()))
+    assert held["held_places"] == [2, 3]
     with pytest.raises(UsageError, match="the joint 'q2' moves the chain from outside"):
         moveit._group(module, SimpleNamespace(file_axes=(), axes=axes[:3]))
     rows = module.dh.rows

@@ -1,4 +1,4 @@
-#include "{{ package }}/robot_model.hpp"
+#include "ikgen_moveit/robot_model.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace {{ package }} {
+namespace ikgen_moveit {
 namespace {
 
 using moveit::core::JointModel;
@@ -137,4 +137,4 @@ Placement place_chain(const RobotModel& model, const std::string& group_base, co
   return out;
 }
 
-}  // namespace {{ package }}
+}  // namespace ikgen_moveit

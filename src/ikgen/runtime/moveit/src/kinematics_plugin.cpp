@@ -1,4 +1,4 @@
-#include "{{ package }}/kinematics_plugin.hpp"
+#include "ikgen_moveit/kinematics_plugin.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,16 +8,16 @@
 #include <pluginlib/class_list_macros.hpp>
 #include <rclcpp/logging.hpp>
 
-#include "{{ package }}/messages.hpp"
+#include "ikgen_moveit/messages.hpp"
 
-namespace {{ package }} {
+namespace ikgen_moveit {
 namespace {
 
 namespace errors = kinematics::KinematicErrors;
 namespace methods = kinematics::DiscretizationMethods;
 using Errors = KinematicsPlugin::ErrorCodes;
 
-rclcpp::Logger logger() { return rclcpp::get_logger("{{ package }}"); }
+rclcpp::Logger logger() { return rclcpp::get_logger("ikgen_moveit"); }
 
 int error_of(Outcome outcome, int callback_error) {
   switch (outcome) {
@@ -41,9 +41,7 @@ bool fails(kinematics::KinematicsResult& result, kinematics::KinematicError erro
 
 KinematicsPlugin::KinematicsPlugin() {
   joint_names_ = group_names();
-{% if m.held %}
-  supported_methods_.push_back(methods::ALL_DISCRETIZED);
-{% endif %}
+  if (ik::kFree > 0) supported_methods_.push_back(methods::ALL_DISCRETIZED);
 }
 
 bool KinematicsPlugin::initialize(const rclcpp::Node::SharedPtr& node, const moveit::core::RobotModel& robot_model,
@@ -51,11 +49,8 @@ bool KinematicsPlugin::initialize(const rclcpp::Node::SharedPtr& node, const mov
                                   const std::vector<std::string>& tip_frames, double search_discretization) {
   initialized_ = false;
   node_ = node;
-{% if m.free_indices %}
   redundant_joint_indices_.clear();
-  for (const int j : kFreeJoints)
-    redundant_joint_indices_.push_back(static_cast<unsigned int>(kPlaces[static_cast<std::size_t>(j)]));
-{% endif %}
+  for (const unsigned int place : kHeldPlaces) redundant_joint_indices_.push_back(place);
   storeValues(robot_model, group_name, base_frame, tip_frames, search_discretization);
   try {
     if (tip_frames_.size() != 1) throw std::runtime_error("this solver has one tip");
@@ -95,12 +90,9 @@ std::optional<Query> KinematicsPlugin::query(const Pose& pose, const Values& see
 }
 
 double KinematicsPlugin::resolution() const {
-{% if m.free_indices %}
-  const double given = getSearchDiscretization(static_cast<int>(kPlaces[static_cast<std::size_t>(kFreeJoints.front())]));
-  return given > 0.0 ? given : DEFAULT_SEARCH_DISCRETIZATION;
-{% else %}
+  for (const unsigned int place : kHeldPlaces)
+    if (const double given = getSearchDiscretization(static_cast<int>(place)); given > 0.0) return given;
   return DEFAULT_SEARCH_DISCRETIZATION;
-{% endif %}
 }
 
 bool KinematicsPlugin::getPositionIK(const Pose& ik_pose, const Values& ik_seed_state, Values& solution,
@@ -202,6 +194,6 @@ bool KinematicsPlugin::setRedundantJoints(const std::vector<unsigned int>& redun
   return redundant_joint_indices == redundant_joint_indices_;
 }
 
-}  // namespace {{ package }}
+}  // namespace ikgen_moveit
 
-PLUGINLIB_EXPORT_CLASS({{ package }}::KinematicsPlugin, kinematics::KinematicsBase)
+PLUGINLIB_EXPORT_CLASS(ikgen_moveit::KinematicsPlugin, kinematics::KinematicsBase)
