@@ -57,8 +57,10 @@ def cpp_functions(found: Iterable[Definition]) -> Iterator[tuple[str, int]]:
 
 
 def test_functions_of_the_cpp_runtime_are_short() -> None:
-    inner = re.compile(r"namespace ikgen_runtime \{\n(.*)\}  // namespace", re.DOTALL)
-    texts = [inner.search(path.read_text(encoding="utf-8")) for path in RUNTIME.rglob("*.hpp")]
+    unnamed = re.compile(r"^(?:namespace \{|\}  // namespace)\n", re.MULTILINE)
+    inner = re.compile(r"\nnamespace \w+ \{\n(.*)\}  // namespace", re.DOTALL)
+    files = RUNTIME.parent.rglob("*.[ch]pp")
+    texts = [inner.search(unnamed.sub("", path.read_text(encoding="utf-8"))) for path in files]
     found = [one for text in texts if text for one in cpp_functions(definitions(text[1]))]
     assert len(found) > 1000
     assert statistics.quantiles((lines for _, lines in found), n=10)[-1] <= 25

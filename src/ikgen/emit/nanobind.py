@@ -15,11 +15,12 @@ from ikgen.emit.solver_module import SolverModule
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Derivation
 
-__all__ = ["emit", "emit_derivation", "package_folder"]
+__all__ = ["SOURCES", "emit", "emit_derivation", "package_folder"]
 
 _FILES = ("pyproject.toml", "CMakeLists.txt", "README.md", "native.cpp")
 _PACKAGE = ("_native.pyi", "py.typed")
-_ARGUMENTS = Path(__file__).resolve().parents[1] / "runtime" / "nanobind" / "array_arguments.hpp"
+SOURCES = Path(__file__).resolve().parents[1] / "runtime" / "nanobind"
+"""What is the same for all arms."""
 
 
 def package_folder(name: str) -> str:
@@ -47,7 +48,8 @@ def emit(module: SolverModule) -> dict[str, str]:
     }
     out = {path: render("nanobind", f"{file}.jinja", **values) for path, file in paths.items()}
     out[f"{package}/{package}/__init__.py"] = emit_interface(module)
-    out[f"{package}/{_ARGUMENTS.name}"] = _ARGUMENTS.read_text(encoding="utf-8")
+    for path in sorted(SOURCES.glob("*.hpp")):
+        out[f"{package}/{path.name}"] = path.read_text(encoding="utf-8")
     return out | {f"{package}/{module.name}_ik.hpp": emit_header(module)}
 
 
