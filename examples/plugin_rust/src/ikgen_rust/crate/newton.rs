@@ -1,13 +1,8 @@
 //! Newton steps on the file's own chain, and whether a configuration is singular.
 
-use crate::arm::{DOF, FREE_JOINTS, READ};
+use crate::arm::{ARRIVED, CONVERGED, DAMPING, DOF, FREE_JOINTS, LARGEST_STEP, LEAST_DAMPING, PATIENCE, PROGRESS, READ, REFINEMENT};
 use crate::chain::chain;
 use crate::{Joints, Pose};
-
-/// Of a row's pose: rad, or m over the arm's size.
-const TOLERANCE: f64 = 1e-9;
-/// Steps without progress.
-const PATIENCE: usize = 5;
 
 /// Per entry that the task reads: its error, and the derivative of the entry by each joint.
 type Offset = [(f64, Joints); READ.len()];
@@ -47,7 +42,7 @@ fn solve_symmetric(a: &mut [Joints; DOF], x: &mut Joints) {
 
 /// Damped least squares: at a fold of the solution set the steps halve the error.
 fn step(at: &Offset, worst: f64, q: &mut Joints) {
-    let damping = f64::max(1e-12, 1e-3 * worst.min(1.0).powi(2));
+    let damping = f64::max(LEAST_DAMPING, DAMPING * worst.min(1.0).powi(2));
     let (mut a, mut x) = ([[0.0; DOF]; DOF], [0.0; DOF]);
     for (error, row) in at {
         for i in 0..DOF {
@@ -62,7 +57,7 @@ fn step(at: &Offset, worst: f64, q: &mut Joints) {
     }
     solve_symmetric(&mut a, &mut x);
     for j in 0..DOF {
-        q[j] += x[j].clamp(-0.3, 0.3);
+        q[j] += x[j].clamp(-LARGEST_STEP, LARGEST_STEP);
     }
 }
 
@@ -72,12 +67,12 @@ fn newton(q: &mut Joints, target: &Pose, steps: usize) -> f64 {
     for i in 0.. {
         let at = offset_from(&trial, target);
         let worst = at.iter().map(|(error, _)| error.abs()).fold(0.0, f64::max);
-        stalled = if worst < 0.8 * best && worst > 1e-13 { 0 } else { stalled + 1 };
+        stalled = if worst < PROGRESS * best && worst > CONVERGED { 0 } else { stalled + 1 };
         if worst < best {
             best = worst;
             *q = trial;
         }
-        if i == steps || stalled == PATIENCE || !(best > 1e-13) {
+        if i == steps || stalled == PATIENCE || !(best > CONVERGED) {
             break;
         }
         step(&at, worst, &mut trial);
@@ -88,13 +83,14 @@ fn newton(q: &mut Joints, target: &Pose, steps: usize) -> f64 {
 /// Whether Newton steps lead from q to the pose: only what is promising takes many. All digits
 /// are wanted where they come easily, as rows may lie on a limit.
 pub(crate) fn polish(q: &mut Joints, target: &Pose) -> bool {
-    let mut error = newton(q, target, 3);
-    for (steps, fine, promising) in [(6, 1e-12, 0.1), (30, 0.5 * TOLERANCE, 1e-3)] {
-        if error >= fine && error < promising {
-            error = newton(q, target, steps);
+    let mut error = f64::INFINITY;
+    for (steps, fine, promising) in REFINEMENT {
+        error = newton(q, target, steps);
+        if error < fine || error >= promising {
+            break;
         }
     }
-    error < 0.5 * TOLERANCE
+    error < ARRIVED
 }
 
 /// Whether the moving joints' Jacobian has a singular value below `bound`: one-sided Jacobi rotations.

@@ -3,13 +3,10 @@
 use std::f64::consts::{PI, TAU};
 
 use crate::arm::{branches, BESIDE, DOF, FREE_DEFAULTS, FREE_JOINTS, LOWER, MAX_SOLUTIONS, ORIENTATION, READ, REVOLUTE, UPPER, WHOLE_POSE};
+use crate::arm::{COINCIDENT, CONTINUUM_BELOW, LIMIT_TOLERANCE, POSE_TOLERANCE, SINGULAR_BELOW, TRIES, TRY_STEP};
 use crate::chain::product;
 use crate::newton::{loses_rank, polish};
 use crate::{Joints, Options, Pose, Row, Solutions, Status};
-
-const LIMIT_TOLERANCE: f64 = 1e-9;
-/// Rows closer than this are one.
-const SAME: f64 = 1e-6;
 
 /// All joint values that bring TIP_LINK to the pose in BASE_LINK.
 pub fn solve(pose: &Pose, options: &Options) -> Solutions {
@@ -40,13 +37,13 @@ fn held(options: &Options, seed: Option<Joints>) -> Options {
 }
 
 /// Solutions on the right turns, and whether there were any before limits. Where the pose leaves a joint
-/// free and the seed's value of it leads nowhere, fifteen others are tried.
+/// free and the seed's value of it leads nowhere, others are tried.
 fn fitting(pose: &Pose, seed: Option<Joints>, options: &Options) -> (Vec<Row>, bool) {
     let mut real = false;
-    for turn in 0..16 {
+    for turn in 0..TRIES {
         let mut start = seed.unwrap_or([0.0; DOF]);
         for j in 0..DOF {
-            start[j] += if REVOLUTE[j] { turn as f64 * PI / 8.0 } else { 0.0 };
+            start[j] += if REVOLUTE[j] { turn as f64 * TRY_STEP } else { 0.0 };
         }
         for (i, &j) in FREE_JOINTS.iter().enumerate() {
             start[j] = options.free[i];
@@ -56,7 +53,7 @@ fn fitting(pose: &Pose, seed: Option<Joints>, options: &Options) -> (Vec<Row>, b
         let place = |row: Row| place_row(row.q, seed, options.limits).map(|q| Row { q, ..row });
         let mut rows: Vec<Row> = found.into_iter().filter_map(place).collect();
         if rows.is_empty() && seed.is_some() && polish(&mut start, pose) {
-            rows.extend(place(Row { q: start, singular: loses_rank(&start, 1e-3) }));
+            rows.extend(place(Row { q: start, singular: loses_rank(&start, CONTINUUM_BELOW) }));
         }
         if !rows.is_empty() || !hit {
             if let Some(seed) = seed {
@@ -83,12 +80,12 @@ fn find_rows(pose: &Pose, start: &Joints, options: &Options) -> (Vec<Row>, bool)
     };
     let mut q = *start;
     if hit && polish(&mut q, pose) {
-        add(q, loses_rank(&q, 1e-3));
+        add(q, loses_rank(&q, CONTINUUM_BELOW));
     }
     for row in candidates.iter().filter(|row| row.rough) {
         let mut q = row.q;
         if polish(&mut q, pose) {
-            add(q, loses_rank(&q, if row.singular { 1e-3 } else { 1e-7 }));
+            add(q, loses_rank(&q, if row.singular { CONTINUUM_BELOW } else { SINGULAR_BELOW }));
         }
     }
     for row in candidates.iter().filter(|row| !row.rough) {
@@ -101,7 +98,7 @@ fn find_rows(pose: &Pose, start: &Joints, options: &Options) -> (Vec<Row>, bool)
 fn same(a: &Joints, b: &Joints) -> bool {
     (0..DOF).all(|j| {
         let gap = (a[j] - b[j]).abs();
-        gap <= SAME || (REVOLUTE[j] && (gap - TAU * (gap / TAU).round()).abs() <= SAME)
+        gap <= COINCIDENT || (REVOLUTE[j] && (gap - TAU * (gap / TAU).round()).abs() <= COINCIDENT)
     })
 }
 
@@ -132,9 +129,9 @@ fn place_row(mut q: Joints, seed: Option<Joints>, limits: bool) -> Option<Joints
     Some(q)
 }
 
-/// Whether what the task reads of the pose is that of a rigid transform, to 1e-6.
+/// Whether what the task reads of the pose is that of a rigid transform.
 fn is_pose(t: &Pose) -> bool {
-    let near = |x: f64, y: f64| (x - y).abs() < 1e-6;
+    let near = |x: f64, y: f64| (x - y).abs() < POSE_TOLERANCE;
     let product = |a: usize, b: usize| (0..3).map(|k| t[a][k] * t[b][k]).sum::<f64>();
     let column = |c: usize| (0..3).map(|r| t[r][c] * t[r][c]).sum::<f64>();
     if READ.iter().any(|&(r, c, _)| !t[r][c].is_finite()) || (WHOLE_POSE && t[3] != [0.0, 0.0, 0.0, 1.0]) {
@@ -153,7 +150,7 @@ fn is_pose(t: &Pose) -> bool {
         "direction" => near(column(2), 1.0),
         "yaw" => {
             let square = t[0][0] * t[0][0] + t[1][0] * t[1][0];
-            square > 0.0 && square < 1.0 + 1e-6
+            square > 0.0 && square < 1.0 + POSE_TOLERANCE
         }
         _ => true,
     }
