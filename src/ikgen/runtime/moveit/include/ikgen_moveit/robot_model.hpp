@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "ikgen_moveit/group_joints.hpp"
+#include "ikgen_moveit/candidates.hpp"
 #include "ikgen_moveit/moveit_headers.hpp"
 
 namespace ikgen_moveit {
