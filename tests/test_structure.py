@@ -8,6 +8,7 @@ import statistics
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from configparser import ConfigParser
+from itertools import groupby
 from pathlib import Path
 
 import pytest
@@ -65,6 +66,18 @@ def test_functions_of_the_cpp_runtime_are_short() -> None:
     assert len(found) > 1000
     assert statistics.quantiles((lines for _, lines in found), n=10)[-1] <= 25
     assert [(name, lines) for name, lines in found if lines > 50] == []
+
+
+def test_templates_hold_little_that_is_the_same_for_all_arms() -> None:
+    """What holds no Jinja is a source file, compiled and tested by itself, or a few lines of shape."""
+    longest = {}
+    for path in [*(ROOT / "templates").rglob("*.jinja"), *(ROOT / "examples").rglob("*.jinja")]:
+        lines = path.read_text(encoding="utf-8").splitlines()
+        plain = (not re.search(r"\{[{%#]", line) for line in lines)
+        runs = [sum(1 for _ in run) for same, run in groupby(plain) if same]
+        longest[path.name] = max(runs, default=0)
+    assert len(longest) > 40
+    assert {name: lines for name, lines in longest.items() if lines > 47} == {}
 
 
 def test_headers_include_what_the_layers_of_their_folders_allow() -> None:
