@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import importlib
+import re
 import shutil
 import subprocess
 import sys
 import zipfile
+from ast import literal_eval
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -18,6 +20,7 @@ from ikgen.errors import UsageError
 from ikgen.generation.emitted_arm import EmittedArm
 from ikgen.generation.emitters import find_emitter
 from ikgen.generation.generate import generate
+from ikgen.program.policy import SolvePolicy
 from ikgen.records.request import Outputs, Request
 from ikgen.verify.runners.python_module import PythonModule
 
@@ -78,6 +81,23 @@ def test_rows_are_those_of_the_python_module(arm: str, installed: Path, tmp_path
             np.testing.assert_allclose(other[regular], mine[regular], rtol=0, atol=1e-7)
     np.testing.assert_allclose(rust.forward(q), python.forward(q), rtol=0, atol=1e-12)
     np.testing.assert_allclose(rust.jacobian(q), python.jacobian(q), rtol=0, atol=1e-12)
+
+
+def test_the_policy_is_the_one_that_all_languages_share(installed: Path, tmp_path: Path) -> None:
+    made = generate(ARMS["rounded geometry"], Outputs(("rust",), tmp_path, verify=False))
+    policy = made.derivation.module.policy
+    text = (tmp_path / "ur5e_ik_rs/src/arm.rs").read_text()
+    values = dict(re.findall(r"const (\w+): (?:f64|usize) = ([-+.e\d]+);", text))
+    names = [name for name in SolvePolicy.__dataclass_fields__ if name.upper() in values]
+    assert len(names) == 15
+    for name in names:
+        assert float(values[name.upper()]) == getattr(policy, name), name
+    (stages,) = re.findall(r"const REFINEMENT: [^=]*= \[\n(.*?)\];", text, re.DOTALL)
+    expected = [(one.steps, one.fine, one.promising) for one in policy.refinement]
+    assert list(literal_eval(f"[{stages}]")) == expected
+    for name in ("newton.rs", "rows.rs"):
+        fixed = (tmp_path / "ur5e_ik_rs/src" / name).read_text()
+        assert set(re.findall(r"\b\d+e-\d+|\b0\.0*[1-9]\d*", fixed)) <= {"1e-300", "1e-30"}
 
 
 def test_the_crate_compiles_without_warnings_and_is_verified(

@@ -68,7 +68,7 @@ def _row(module: SolverModule) -> list[str]:
     """The innermost statements: joint values, and what is known of the row."""
     program = module.program
     singular = " || ".join(program.singular) or "false"
-    rough = " || ".join([*program.singular, *(f"{r} > ROUGH" for r in program.residuals)])
+    rough = " || ".join([*program.singular, *(f"{r} > ROUGH_SQUARE" for r in program.residuals)])
     if module.rounded:
         rough = "true"
     row = ", ".join(_text(output.value) for output in program.outputs)
