@@ -30,6 +30,20 @@ from ikgen.runtime.python.rows.solution_rows import Turning
 Array = NDArray[np.float64]
 TURNS = (True,) * 6
 
+RIGHT_ANGLES = {
+    "q6=q2*1": (
+        (0, 0, -1, 1, 1, 1, -1),
+        (0.0, 0.0, 0.49, 0.0, 0.0, 0.28, 0.47),
+        (0.0, 0.0, 0.19, 0.13, 0.0, 0.0, 0.0),
+    ),
+    "q3=q1*1": (
+        (0, 0, 1, -1, 1, 0, 1),
+        (0.0, 0.0, 0.0, 0.41, 0.0, 0.14, 0.0),
+        (0.0, 0.39, 0.0, 0.11, 0.42, 0.44, 0.11),
+    ),
+}
+"""Twists over 90 degrees and lengths of tables whose twelve equations are singular at every angle of the
+coupled joint."""
 COUPLED = ["q6=q5*-1", "q7=q2*1", "q3=q1*2", "q4=q3*-2", "q5=q4*3", "q4=q2*-1"]
 """What follows what with which ratio: of a hollow wrist, then of a general table."""
 HOLLOW = COUPLED[0]
@@ -55,9 +69,27 @@ def general_table(folder: Path) -> Path:
 
 
 def solved(plan: EliminationPlan, poses: Array) -> list[Array]:
-    find = CoupledAngle(plan.motions, plan.crowded)
-    made = Plan(plan.length, plan.eliminations, TURNS, find, motions=plan.motions)
+    find = plan.routine.find
+    assert isinstance(find, type)
+    finder = find(plan.motions, plan.crowded)
+    made = Plan(plan.length, plan.eliminations, TURNS, finder, motions=plan.motions)
     return six_joints_batch(plan.frames, made, poses)
+
+
+def right_angled_table(folder: Path, relation: str = "q6=q2*1") -> Path:
+    twists, a, d = RIGHT_ANGLES[relation]
+    return coupled_table(folder, [0.5 * np.pi * k for k in twists], a, d)
+
+
+@cache
+def right_angled_arm(relation: str) -> tuple[EliminationPlan, Chain]:
+    """The plan of an arm of `RIGHT_ANGLES`, and its chain."""
+    follower, _, words = relation.partition("=")
+    with tempfile.TemporaryDirectory() as name:
+        table = right_angled_table(Path(name), relation)
+        plan = elimination_plan(read(Request(table, couple={follower: words})).dh)
+    assert plan is not None, relation
+    return plan, chain_of(plan.frames, plan.motions, 6)
 
 
 def regular(chain: Chain, count: int, seed: int) -> Array:
@@ -74,6 +106,21 @@ def test_every_row_is_right_and_every_configuration_found(relation: str) -> None
         assert np.abs(forward(chain, rows) - pose).max() < 1e-9
         assert apart(rows, row).min() < 1e-5
         assert len(rows) <= plan.most
+
+
+@pytest.mark.parametrize("relation", RIGHT_ANGLES)
+def test_right_angles_that_leave_no_rank_take_half_angles_of_both_angles(relation: str) -> None:
+    plan, chain = right_angled_arm(relation)
+    assert plan.both
+    q = regular(chain, 40, seed=6)
+    poses = forward(chain, q)
+    for rows, pose, row in zip(solved(plan, poses), poses, q, strict=True):
+        assert np.abs(forward(chain, rows) - pose).max() < 1e-9
+        assert apart(rows, row).min() < 1e-5
+        assert len(rows) % 2 == 0
+    for rows, pose in zip(solved(plan, poses[:2]), poses, strict=False):
+        for other in searched(plan.frames, plan.motions, TURNS, plan.length, pose, seed=3):
+            assert apart(rows, other).min() < 1e-4
 
 
 @pytest.mark.parametrize("place", [1, 3, 6])
@@ -185,6 +232,7 @@ def test_two_coupled_joints_have_no_plan(tmp_path: Path) -> None:
     ("table", "couple"),
     [
         (hollow_wrist, {"q6": "q5*-1"}),
+        (right_angled_table, {"q6": "q2*1"}),
         pytest.param(parallelogram_arm, PARALLELOGRAM, marks=pytest.mark.long),
     ],
 )

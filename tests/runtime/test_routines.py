@@ -6,6 +6,7 @@ import pytest
 
 from ikgen.emit.cpp.header_bundle import bundle
 from ikgen.runtime.python.elimination.coupled_angle import CoupledAngle
+from ikgen.runtime.python.elimination.coupled_both import CoupledBothAngle
 from ikgen.runtime.python.elimination.general_6r import candidates
 from ikgen.runtime.python.elimination.one_slide import one_slide_candidates
 from ikgen.runtime.python.elimination.three_slides import three_slide_candidates
@@ -26,6 +27,7 @@ ROUTINES = {
     "one_slide": (one_slide_candidates, "elimination/one_slide.hpp", "struct OneSlide"),
     "two_slides": (two_slide_candidates, "elimination/two_slides.hpp", "struct TwoSlides"),
     "coupled_6r": (CoupledAngle(()), "elimination/coupled_6r.hpp", "struct Coupled6r"),
+    "coupled_both": (CoupledBothAngle(()), "elimination/coupled_both.hpp", "struct CoupledBoth"),
     "three_slides": (three_slide_candidates, "elimination/three_slides.hpp", "struct ThreeSlides"),
 }
 

@@ -3,8 +3,8 @@
 The loop of the other five may be begun at any of them and run backwards. What is coupled must not lie in
 the loop's first or last link. The degree of the determinant in the coupled joint's angle follows from
 ratios and geometry, and is measured: what rounding leaves of higher harmonics is far below the others.
-Where it vanishes at every angle, two solutions share their angles with others, and the elimination is
-none.
+Where it vanishes at every angle, as right angles make it, half angles of both angles beside the coupled
+one are taken.
 """
 
 from __future__ import annotations
@@ -28,12 +28,9 @@ from ikgen.elimination.routine import Elimination, Plan, initial_residuals
 from ikgen.kinematics.rigid import read_only
 from ikgen.model.arrays import Array
 from ikgen.runtime.python.arm.chain_kinematics import Chain, Motion, chain_of, forward, jacobian
-from ikgen.runtime.python.elimination.coupled_angle import (
-    CoupledAngle,
-    coupled_and_others,
-    coupled_determinants,
-    neighbours,
-)
+from ikgen.runtime.python.elimination.coupled_angle import CoupledAngle, coupled_determinants
+from ikgen.runtime.python.elimination.coupled_both import CoupledBothAngle, tall_determinants
+from ikgen.runtime.python.elimination.coupled_loop import coupled_and_others, neighbours
 
 __all__ = ["choose_coupled"]
 
@@ -49,15 +46,29 @@ _ROUNDING = 1e-12
 def choose_coupled(frames: Array, motions: tuple[Motion, ...]) -> EliminationPlan | None:
     """The best eliminations for a chain of six revolute joints, frames (n + 1, 4, 4) with n > 6 motions, or
     for all of a family (m, n + 1, 4, 4): those of the least degree that find all solutions, else those that
-    find most. None where no elimination applies."""
-    family = frames[None] if frames.ndim == 3 else frames
+    find most; by half angles of both angles beside the coupled one where one alone does not do. None where
+    no elimination applies."""
+    best: EliminationPlan | None = None
+    for both in (False, True):
+        plan = _chosen(frames[None] if frames.ndim == 3 else frames, motions, both=both)
+        if plan is not None and (best is None or plan.recall > best.recall):
+            best = plan
+        if best is not None and best.usable:
+            break
+    return best
+
+
+def _chosen(family: Array, motions: tuple[Motion, ...], *, both: bool) -> EliminationPlan | None:
+    """The best eliminations of one sort for a family (m, n + 1, 4, 4)."""
     rng, length = np.random.default_rng(0), typical_length(family[0])
     chains = [chain_of(member, motions, 6) for member in over(family, length)]
     probes = [_configurations(chain, max(_PROBES // len(family), 4), rng) for chain in chains]
-    first = read_only(family[0])
+    if not sum(map(len, probes)):
+        return None  # singular everywhere
+    first, finder = read_only(family[0]), CoupledBothAngle if both else CoupledAngle
     best: EliminationPlan | None = None
-    for crowded, group in _eliminations(chains[0], rng):
-        find = CoupledAngle(motions, crowded)
+    for crowded, group in _eliminations(chains[0], rng, both=both):
+        find = finder(motions, crowded)
         plans = [Plan(length, (e,), _ALL_TURN, find, motions=motions) for e in group]
         parts = [_probe(*known, plans) for known in zip(family, chains, probes, strict=True)]
         hits = np.concatenate([part[0] for part in parts], axis=1)
@@ -65,7 +76,9 @@ def choose_coupled(frames: Array, motions: tuple[Motion, ...]) -> EliminationPla
         recall = float(hits[order[0]].mean()) if hits.size else 0.0
         if best is None or recall > best.recall:
             chosen = tuple(group[k] for k in order)
-            best = EliminationPlan(first, length, chosen, recall, motions=motions, crowded=crowded)
+            best = EliminationPlan(
+                first, length, chosen, recall, motions=motions, crowded=crowded, both=both
+            )
         if best.usable:
             break
     return best
@@ -87,7 +100,7 @@ _Crowded = tuple[tuple[float, int], ...]
 _Group = tuple[_Crowded, list[Elimination]]
 
 
-def _eliminations(chain: Chain, rng: np.random.Generator) -> list[_Group]:
+def _eliminations(chain: Chain, rng: np.random.Generator, *, both: bool) -> list[_Group]:
     """The eliminations that apply, each with its degree, in groups of one degree and the same crowded
     angles, the least degree first."""
     nodes: Array = 2.0 * np.pi / _NODES * np.arange(_NODES, dtype=float)
@@ -95,12 +108,13 @@ def _eliminations(chain: Chain, rng: np.random.Generator) -> list[_Group]:
     joints = [motion[0] for motion in chain.motions]
     coupled, singles = coupled_and_others(chain.motions)
     found: dict[tuple[int, _Crowded], list[Elimination]] = {}
+    vanishing = tall_determinants if both else coupled_determinants
     for reverse, start in product((0, 1), range(5)):
         at = joints.index(singles[start])
         if coupled in (joints[at - 1], joints[(at + 1) % len(joints)]):
             continue
         one = chain.motions, [*chain.frames[:, None]]
-        determinants = partial(coupled_determinants, *one, poses, (start, reverse, 0))
+        determinants = partial(vanishing, *one, poses, (start, reverse, 0))
         degree = _degree(determinants(nodes))
         if 0 < degree <= _MOST_DEGREE:
             crowded = crowded_angles(partial(neighbours, *one, (start, reverse, 0)), determinants)

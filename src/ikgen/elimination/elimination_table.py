@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ikgen.runtime.python.elimination.coupled_angle import CoupledAngle
+from ikgen.runtime.python.elimination.coupled_both import CoupledBothAngle
 from ikgen.runtime.python.elimination.general_6r import Finder, candidates
 from ikgen.runtime.python.elimination.one_slide import (
     one_slide_both_candidates,
@@ -41,6 +42,7 @@ ELIMINATIONS = (
     EliminationRoutine("two_slides", "4R2P", 2, two_slide_candidates, 8),
     EliminationRoutine("three_slides", "3R3P", 3, three_slide_candidates, 2),
     EliminationRoutine("coupled_6r", "coupled 6R", 0, CoupledAngle, coupled=True),
+    EliminationRoutine("coupled_both", "coupled 6R", 0, CoupledBothAngle, both=True, coupled=True),
 )
 
 

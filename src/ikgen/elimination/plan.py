@@ -29,7 +29,7 @@ from ikgen.elimination.routine import Elimination, Plan, Turning, initial_residu
 from ikgen.kinematics.rigid import read_only
 from ikgen.model.arrays import Array
 from ikgen.runtime.python.arm.chain_kinematics import Motion
-from ikgen.runtime.python.elimination.coupled_angle import coupled_and_others
+from ikgen.runtime.python.elimination.coupled_loop import coupled_and_others
 
 __all__ = [
     "EliminationPlan",

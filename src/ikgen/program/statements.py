@@ -65,6 +65,7 @@ class Call:
     | `two_slides` | pose, held joints | four revolute joints and two slides |
     | `three_slides` | pose, held joints | three revolute joints and three slides |
     | `coupled_6r` | pose, held joints | six revolute joints, of which one moves several axes |
+    | `coupled_both` | pose, held joints | the same where half angles of one angle leave no rank |
 
     Roots are those of a2 cos 2u + b2 sin 2u + a1 cos u + b1 sin u + a0. Pose: the entries r11, r12, r13,
     px, r21, ... of its upper three rows. Joints, base to tip: cosine and sine of the DH variable of each

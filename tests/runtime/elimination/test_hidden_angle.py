@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ikgen.runtime.python.elimination.both_half_angles import lift_both
 from ikgen.runtime.python.elimination.hidden_angle import _JITTER, lift, solved
 
 
@@ -56,3 +57,4 @@ def test_rows_times_half_angles_are_rows_in_these() -> None:
 def test_no_rows_are_lifted_to_none() -> None:
     assert lift(np.zeros((0, 26, 6, 9))).shape == (0, 26, 12, 12)
     assert lift(np.zeros((4, 0, 6, 9))).shape == (4, 0, 12, 12)
+    assert lift_both(np.zeros((0, 26, 6, 9))).shape == (0, 26, 24, 16)

@@ -89,7 +89,7 @@ def _finder(module: SolverModule) -> dict[str, str] | None:
     if module.plan is None:
         return None
     find = module.plan.routine.find
-    alias = "_CoupledAngle" if isinstance(find, type) else "_candidates"
+    alias = f"_{find.__name__}" if isinstance(find, type) else "_candidates"
     return {"module": find.__module__.split(".")[-1], "name": find.__name__, "alias": alias}
 
 

@@ -72,25 +72,51 @@ inline std::array<Complex, N - 1> polynomial_roots(const std::array<Complex, N>&
   return z;
 }
 
+// How often a function is looked at closely, and where rounding may move the roots of the whole circle's polynomial, or may
+// have made real ones complex (rad).
+constexpr Index kLooks = 8;
+struct Unsure {
+  Index count = 0;
+  std::array<double, 2 * kLooks> angle;
+
+  void add(double x) noexcept {
+    if (count < angle.size()) angle[count++] = x;
+  }
+};
+
 // The angles of roots near the unit circle, of a polynomial of degree D with these values at n equidistant nodes from
 // `first` on; how many.
 template <Index D, Index n, std::size_t most>
 inline int circle_roots(const std::array<double, n>& values, double first, double accept,
-                        std::array<double, most>& angles) noexcept {
+                        std::array<double, most>& angles, Unsure& unsure) noexcept {
+  constexpr double noise = 1e-13;  // of the coefficients, of the largest
+  constexpr double off = 0.3;      // rad: imaginary part from which on a root cannot be real
+  constexpr double sure = 1e-6, share = 0.25;  // rad, and of its imaginary part, by which rounding may move a root
   std::array<Complex, n> turn;
   for (Index i = 0; i < n; ++i) {
     const double angle = 2.0 * kPi * static_cast<double>(i) / static_cast<double>(n);
     turn[i] = {std::cos(angle), -std::sin(angle)};
   }
   std::array<Complex, 2 * D + 1> c{};
+  double largest = 0.0;
   for (Index k = 0; k <= D; ++k) {
     for (Index i = 0; i < n; ++i) c[D + k] += values[i] * turn[k * i % n];
     c[D - k] = std::conj(c[D + k]);
+    largest = std::max(largest, std::sqrt(std::norm(c[D + k])));
   }
   int count = 0;
-  for (const Complex& z : polynomial_roots(c))
-    if (std::abs(0.5 * std::log(std::norm(z) + 1e-300)) < accept)
-      angles[static_cast<Index>(count++)] = first + std::arg(z);
+  const auto roots = polynomial_roots(c);
+  for (const Complex& z : roots) {
+    const double away = std::abs(0.5 * std::log(std::norm(z) + 1e-300)), angle = first + std::arg(z);
+    if (away < accept) angles[static_cast<Index>(count++)] = angle;
+    if (!(away < off)) continue;
+    const double size = std::sqrt(std::norm(z));
+    double powers = 0.0, slope = size * std::sqrt(std::norm(c[2 * D]));
+    for (Index k = 0; k < c.size(); ++k) powers = powers * size + 1.0;
+    for (const Complex& other : roots)
+      if (&other != &z) slope *= std::sqrt(std::norm(z - other));
+    if (!(noise * largest * powers < slope * std::max(sure, share * away))) unsure.add(angle);
+  }
   return count;
 }
 
@@ -128,27 +154,31 @@ inline int look_closely(const Function& of, double place, double accept, std::ar
   return kept;
 }
 
-// Roots so close together (rad) that rounding of the whole circle's polynomial may move them far; how often it is looked.
+// Roots so close together (rad) that rounding of the whole circle's polynomial may move them far.
 constexpr double kBeside = 0.1;
-constexpr Index kLooks = 4;
 
-// Looks closely where two or more of the first `count` angles lie together; how many there are then.
+// Looks closely where roots are unsure, and where two or more of the first `count` angles lie together; how many there are
+// then.
 template <class Function, std::size_t most>
-inline int look_where_close(const Function& of, double accept, std::array<double, most>& angles, int count) noexcept {
+inline int look_where_close(const Function& of, double accept, const Unsure& unsure, std::array<double, most>& angles,
+                            int count) noexcept {
   const std::array<double, most> roots = angles;
   std::array<double, kLooks> looked{};
   Index looks = 0;
   const auto apart = [](double a, double b) { return std::abs(std::remainder(a - b, 2.0 * kPi)); };
-  const int given = count;
-  for (int i = 0; i < given && looks < kLooks; ++i) {
-    const double place = roots[static_cast<Index>(i)];
-    bool known = false, close = false;
+  const auto look = [&](double place) {
+    bool known = looks == kLooks;
     for (Index k = 0; k < looks; ++k) known = known || apart(looked[k], place) <= 0.9 * kNear;
-    for (int j = 0; j < given; ++j) close = close || (j != i && apart(roots[static_cast<Index>(j)], place) < kBeside);
-    if (known || !close) continue;
+    if (known) return;
     count = look_closely(of, place, accept, angles, count);
     looked[looks++] = place;
-  }
+  };
+  const int given = count;
+  for (Index i = 0; i < unsure.count; ++i) look(unsure.angle[i]);
+  for (int i = 0; i < given; ++i)
+    for (int j = 0; j < given; ++j)
+      if (j != i && apart(roots[static_cast<Index>(j)], roots[static_cast<Index>(i)]) < kBeside)
+        look(roots[static_cast<Index>(i)]);
   return count;
 }
 

@@ -25,7 +25,7 @@ from ikgen.runtime.python.elimination.hidden_angle import (
 from ikgen.runtime.python.elimination.loop_equations import XS, YS
 from ikgen.runtime.python.rows.solution_rows import first_of_equals, rows_of
 
-__all__ = ["both_angles"]
+__all__ = ["both_angles", "lift_both", "null_pairs"]
 
 _ACCEPT = 0.03  # rad: imaginary part of roots that candidates come from
 _SOLVED = 1e-7  # of the equations' size: what a solution that keeps half its digits leaves of them
@@ -63,7 +63,7 @@ def both_angles(E: Array, left: Array, _: int) -> tuple[Index, Array, Index, Fla
     off[pose[~true], root[~true]] = _FAR
     pose, root = pose[true], root[true]
     t3 = angle[pose, root]
-    k, t45, again = _pairs(rows[true], sigma[true], pose, t3)
+    k, t45, again = null_pairs(rows[true], sigma[true], pose, t3)
     t = np.concatenate([t3[k, None], t45], axis=1)
     solved = np.flatnonzero(_left_over(M, pose[k], t) < _SOLVED * size[pose[k]])
     solved = solved[_first(t[solved], pose[k[solved]])]
@@ -82,16 +82,16 @@ def _first(t: Array, pose: Index) -> Flags:
     return first_of_equals(np.repeat(t, 2, axis=1), pose, (True,) * 6, _SAME)
 
 
-def _lift(A: Array) -> Array:
+def lift_both(A: Array) -> Array:
     """Rows (..., 6, 9) in (1, c, s) x (1, c', s') times the half angles of both: (..., 24, 16)."""
     out = A[..., None, :, :] @ _LIFT
-    return np.asarray(out.reshape(*A.shape[:-2], -1, 16))
+    return np.asarray(out.reshape(*A.shape[:-2], 4 * A.shape[-2], 16))
 
 
 def _resultant(E: Array, left: Array) -> Resultant:
     """M0 (N, 24, 16), Mc, Ms with `M(theta_3) = M0 + Mc cos + Ms sin` without full rank at solutions."""
     F0, Fc, Fs = loop_pencil(E, left)
-    return _lift(F0), _lift(Fc), _lift(Fs)
+    return lift_both(F0), lift_both(Fc), lift_both(Fs)
 
 
 def _at(M: Resultant, pose: Index, angle: Array) -> Array:
@@ -125,7 +125,7 @@ def _roots(E: Array, left: Array, M: Resultant) -> tuple[Array, Array, Flags, Fl
     for a in range(4):
         N[:, 6 * a : 6 * a + 6, 4 * a : 4 * a + 4] = cosine
         N[:, 6 * a : 6 * a + 6, 16 + 4 * a : 20 + 4 * a] = sine
-    W = np.concatenate([_lift(left[:, XS]), _lift(left[:, YS])], axis=1)
+    W = np.concatenate([lift_both(left[:, XS]), lift_both(left[:, YS])], axis=1)
     pivot = at_node[row, k]
     left_of, sigma, right_of = np.linalg.svd(pivot, full_matrices=False)
     kept: Flags = np.asarray(sigma > sigma[:, :1] / NO_PIVOT)
@@ -137,7 +137,7 @@ def _roots(E: Array, left: Array, M: Resultant) -> tuple[Array, Array, Flags, Fl
     return *angles_off(t, NODES[k]), np.asarray(kept.all(axis=1)), np.asarray(sharp)
 
 
-def _pairs(rows: Array, sigma: Array, pose: Index, t3: Array) -> tuple[Index, Array, Flags]:
+def null_pairs(rows: Array, sigma: Array, pose: Index, t3: Array) -> tuple[Index, Array, Flags]:
     """theta_4, theta_5 from the right singular vectors (k, 16, 16) and values (k, 16) of M at roots theta_3
     of poses (k,), both in order: indices into k, in order, pairs of angles (m, 2); and which roots (k,) are
     those before them again: one with two solutions counts twice, and is taken once."""

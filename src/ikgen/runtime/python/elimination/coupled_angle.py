@@ -17,18 +17,16 @@ from numpy.typing import NDArray
 
 from ikgen.runtime.python.arm.chain_kinematics import Motion
 from ikgen.runtime.python.arrays.array_types import Array, Flags, Index
-from ikgen.runtime.python.arrays.rigid_motion import inverses, rotations_z
-from ikgen.runtime.python.elimination.back_substitution import complete_angles, null_angles
+from ikgen.runtime.python.elimination.back_substitution import null_angles
+from ikgen.runtime.python.elimination.coupled_loop import CoupledLoop
 from ikgen.runtime.python.elimination.general_6r import Candidates, Elimination
 from ikgen.runtime.python.elimination.hidden_angle import lift, real_angles
-from ikgen.runtime.python.elimination.loop_equations import left_invariants, loop_equations
 from ikgen.runtime.python.rows.solution_rows import rows_of
 
-__all__ = ["CoupledAngle", "coupled_and_others", "coupled_determinants", "neighbours"]
+__all__ = ["CoupledAngle", "coupled_determinants"]
 
 Complex = NDArray[np.complex128]
 
-_ONE = np.eye(4)[None]
 _FIRST_NODE = 0.05  # rad, an angle that no right angle shares
 _REAL = 0.03  # rad, the imaginary part of an angle that may be real
 _NOISE = 1e-13  # of a determinant's harmonics, of the largest
@@ -59,9 +57,16 @@ class CoupledAngle:
         pose, angle, least, clear = self._angles(F, T, elimination)
         if not len(pose):
             return pose, np.zeros((0, 6)), least, clear
-        frames = [rows_of(frame, pose) for frame in F]
-        k, q = _completed(self.motions, frames, T[pose], elimination, pose, angle)
-        return pose[k], q, least, clear
+        loop = CoupledLoop(self.motions, [rows_of(frame, pose) for frame in F], elimination)
+        at = loop.equations(T[pose], angle[:, None])
+        k, pair = null_angles(lift(at.A[:, 0]), pose, angle)
+        return pose[k], loop.completed(at, k, angle, pair), least, clear
+
+    def _determinants(
+        self, F: Sequence[Array], T: Array, elimination: Elimination, nodes: Array
+    ) -> Array:
+        """What vanishes (N, n) at the solutions' angles, at angles `nodes`, (n,) or (N, n)."""
+        return coupled_determinants(self.motions, F, T, elimination, nodes)
 
     def _angles(
         self, F: Sequence[Array], T: Array, elimination: Elimination
@@ -72,10 +77,10 @@ class CoupledAngle:
         _, _, degree = elimination
         step = 2.0 * np.pi / (2 * degree + 2)
         nodes: Array = _FIRST_NODE + step * np.arange(2 * degree + 2, dtype=float)
-        roots, sure = _roots(coupled_determinants(self.motions, F, T, elimination, nodes), degree)
+        roots, sure = _roots(self._determinants(F, T, elimination, nodes), degree)
         roots, sure, clear = self._looked_closely(F, T, elimination, roots, sure)
         for place, order in self.crowded:
-            close = coupled_determinants(self.motions, F, T, elimination, place + _NEAR * _NODES)
+            close = self._determinants(F, T, elimination, place + _NEAR * _NODES)
             near, certain = _close_roots(close)
             core = np.abs(near) < _CORE
             alone = core.sum(axis=1) == order
@@ -103,9 +108,7 @@ class CoupledAngle:
             some = np.flatnonzero(doubtful.any(axis=1))
             place = roots.real[some, np.argmax(doubtful[some], axis=1)][:, None]
             frames, nodes = [rows_of(frame, some) for frame in F], place + _NEAR * _NODES
-            near, certain = _close_roots(
-                coupled_determinants(self.motions, frames, T[some], elimination, nodes)
-            )
+            near, certain = _close_roots(self._determinants(frames, T[some], elimination, nodes))
             way = _way(roots[some], place)
             clear[some] &= ~_at_seam(way, roots[some].imag)
             clear[some] &= ~_at_seam(np.abs(near.real), near.imag)
@@ -125,72 +128,8 @@ def coupled_determinants(
 ) -> Array:
     """The determinants (N, n) of the twelve equations at angles `nodes`, (n,) or (N, n), of the coupled
     joint."""
-    loop = _Loop(motions, F, elimination)
-    links = loop.links(T[:, None], np.atleast_2d(nodes))
-    E, _ = _equations([link[:, 0] for link in links])
-    shape = np.broadcast_shapes(*(link.shape[:2] for link in links[1:4]))
-    inner = (np.broadcast_to(link, (*shape, 4, 4)).reshape(-1, 4, 4) for link in links[1:4])
-    left = left_invariants(*inner).reshape(*shape, 14, 9)
-    return np.asarray(np.linalg.det(_singular(E[:, None], left)))
-
-
-def neighbours(
-    motions: Sequence[Motion], F: Sequence[Array], elimination: Elimination, nodes: Array
-) -> Array:
-    """Cosines (3, n) between the axes beside the links in which the coupled joint may lie, at its angles
-    `nodes` (n,)."""
-    links = _Loop(motions, F, elimination).links(np.eye(4)[None, None], nodes[None])
-    return np.array([np.broadcast_to(link[0, :, 2, 2], nodes.shape) for link in links[1:4]])
-
-
-def coupled_and_others(motions: Sequence[Motion]) -> tuple[int, list[int]]:
-    """The joint that turns several axes, and the others in their order along the chain."""
-    joints = [motion[0] for motion in motions]
-    coupled = max(joints, key=joints.count)
-    return coupled, [joint for joint in joints if joint != coupled]
-
-
-class _Loop:
-    """The loop of the five joints that turn one axis each, as an elimination begins and runs it."""
-
-    def __init__(
-        self, motions: Sequence[Motion], F: Sequence[Array], elimination: Elimination
-    ) -> None:
-        start, reverse, _ = elimination
-        self.coupled, singles = coupled_and_others(motions)
-        step = -1 if reverse else 1
-        self.places = [(start + step * i) % 5 for i in range(5)]
-        self.joints = [singles[place] for place in self.places]
-        self.reverse, self.motions, self.F = reverse, motions, F
-
-    def links(self, T: Array, angle: Array) -> list[Array]:
-        """What is behind each joint in the loop's order, (n, m, 4, 4) or 1 in place of n or m, at poses T
-        (n, m, 4, 4) and angles (n, m) of the coupled joint."""
-        behind, link = [], self.F[0][:, None]
-        for (joint, _, ratio, shift), frame in zip(self.motions, self.F[1:]):
-            if joint == self.coupled:
-                link = link @ rotations_z(ratio * angle + shift) @ frame[:, None]
-            else:
-                behind.append(link)
-                link = frame[:, None]
-        behind = [*behind[1:], link @ inverses(T) @ behind[0]]
-        if self.reverse:
-            return [inverses(behind[place - 1]) for place in self.places]
-        return [behind[place] for place in self.places]
-
-
-def _equations(links: list[Array]) -> tuple[Array, Array]:
-    """Equations E (n, 6, 15) and the invariants of the other side, as `loop_equations` has them: no angle
-    of the coupled joint changes them."""
-    E, _, right = loop_equations([links[0], _ONE, _ONE, _ONE, _ONE, links[4]])
-    return E, right
-
-
-def _singular(E: Array, left: Array) -> Array:
-    """The twelve equations (..., 12, 12) from E (..., 6, 15) and the left's invariants (..., 14, 9)."""
-    A = E[..., :14] @ left
-    A[..., 0] += E[..., 14]
-    return lift(A)
+    at = CoupledLoop(motions, F, elimination).equations(T, np.atleast_2d(nodes))
+    return np.asarray(np.linalg.det(lift(at.A)))
 
 
 def _way(roots: Complex, place: Array | float) -> Array:
@@ -271,27 +210,3 @@ def _close_roots(values: Array) -> tuple[Complex, Flags]:
             waves = waves + np.abs(wave)
     moved = _NEAR * _NOISE * waves / (0.5 * 2.0**_CLOSE * np.abs(lead))
     return _NEAR * x, _sure(x, _NEAR * np.abs(x.imag), moved)
-
-
-def _completed(
-    motions: Sequence[Motion],
-    F: Sequence[Array],
-    T: Array,
-    elimination: Elimination,
-    pose: Index,
-    angle: Array,
-) -> tuple[Index, Array]:
-    """Indices (m,) into the roots, `angle` (k,) of poses T (k, 4, 4), and values (m, 6) of all joints."""
-    loop, count = _Loop(motions, F, elimination), len(angle)
-    links = [link[:, 0] for link in loop.links(T[:, None], angle[:, None])]
-    E, right = _equations(links)
-    left = left_invariants(*(np.broadcast_to(link, (count, 4, 4)) for link in links[1:4]))
-    k, pair = null_angles(_singular(E, left), pose, angle)
-    C = [rows_of(link, k) for link in links]
-    t = np.concatenate([np.zeros((len(k), 1)), pair], axis=1)
-    each = np.arange(len(k))
-    found = complete_angles([C[0], _ONE, *C[1:]], left[k], rows_of(right, k), each, t)
-    q = np.empty((len(k), 6))
-    q[:, loop.joints] = (-1.0 if loop.reverse else 1.0) * found[:, [0, 1, 3, 4, 5]]
-    q[:, loop.coupled] = angle[k]
-    return k, q
