@@ -123,7 +123,7 @@ def test_a_module_is_put_to_the_same(exact: Emitted, tmp_path: Path) -> None:
         ("valid[:, 0] = False", lambda s: sum(d[1] + d[4] for d in s.decades) > 20),
         ("valid[:] = False", lambda s: sum(d[2] + d[5] for d in s.decades) > 500),
     ):
-        last = "    return rows.reshape(DOF, -1, count).transpose(2, 1, 0), valid.copy(), "
+        last = '    return rows.reshape(DOF, -1, count).transpose(2, 1, 0), valid.copy("K"), '
         assert text.count(last) == 1
         own = "rows = rows.reshape(DOF, -1, count).transpose(2, 1, 0).copy()"
         changed = [own, "valid = valid.copy()", line, "return rows, valid, "]
