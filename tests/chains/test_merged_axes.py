@@ -15,6 +15,7 @@ from ikgen.model.chain import PRISMATIC, REVOLUTE, ChainAxis
 Array = NDArray[np.float64]
 
 X, Y, Z = np.eye(3)
+SPANS = (3.0,) * 4
 TIP = np.eye(4)
 TIP[:3, 3] = 0.1, 0.2, 0.3
 
@@ -75,7 +76,7 @@ SEVERAL = {
 
 @pytest.mark.parametrize("axes", ONE.values(), ids=ONE.keys())
 def test_what_moves_as_one_axis_is_one(axes: tuple[ChainAxis, ...]) -> None:
-    merged, tip = merged_axes(axes, TIP)
+    merged, tip = merged_axes(axes, TIP, SPANS)
     assert len(merged) == 1
     for q in np.random.default_rng(1).uniform(-3.0, 3.0, (20, 1)):
         assert np.allclose(forward(merged, tip, q), forward(axes, TIP, q), rtol=0.0, atol=1e-14)
@@ -83,12 +84,22 @@ def test_what_moves_as_one_axis_is_one(axes: tuple[ChainAxis, ...]) -> None:
 
 @pytest.mark.parametrize("axes", SEVERAL.values(), ids=SEVERAL.keys())
 def test_what_does_not_stays_as_it_is(axes: tuple[ChainAxis, ...]) -> None:
-    merged, tip = merged_axes(axes, TIP)
+    merged, tip = merged_axes(axes, TIP, SPANS)
     assert [one.axis is other.axis for one, other in zip(merged, axes, strict=True)]
     assert np.array_equal(tip, TIP)
     assert all(
         np.array_equal(a.T_prev_axis, b.T_prev_axis) for a, b in zip(merged, axes, strict=True)
     )
+
+
+@pytest.mark.parametrize(("span", "count"), [(3.1, 1), (3.2, 2)])
+def test_turns_that_are_different_configurations_inside_the_limits_are_told_apart(
+    span: float, count: int
+) -> None:
+    """The tip comes round every half turn of the joint, its first half every second whole one."""
+    axes = ONE["a joint in two halves"]
+    assert len(merged_axes(axes, TIP, (span,))[0]) == count
+    assert len(merged_axes(PARALLELOGRAM, TIP, (math.inf,))[0]) == 1
 
 
 def test_others_stand_before_and_behind() -> None:
@@ -98,7 +109,7 @@ def test_others_stand_before_and_behind() -> None:
         axis((0.2, 0.3, 0.1), rpy=(0.3, 0.2, 0.1), about=Y, driver=2),
         axis((0.0, 0.1, 0.0), rpy=(0.3, 0.2, 0.1), about=X, driver=3),
     )
-    merged, tip = merged_axes(axes, TIP)
+    merged, tip = merged_axes(axes, TIP, SPANS)
     assert [one.driver for one in merged] == [0, 1, 2, 3]
     for q in np.random.default_rng(2).uniform(-3.0, 3.0, (20, 4)):
         assert np.allclose(forward(merged, tip, q), forward(axes, TIP, q), rtol=0.0, atol=1e-14)

@@ -33,6 +33,7 @@ WRIST = (
     ("spin", "revolute", "1 0 0", "0.1 0 0", (-2.8, 2.8)),
 )
 AROUND = tuple((*j[:4], (-3.3, 3.3) if j[0] == "shoulder" else j[4]) for j in WRIST)
+TURRET = (WRIST[0], ("again", "revolute", "0 0 1", "0 0 0.1", (-3.0, 3.0)), *WRIST[1:5], WRIST[6])
 ARMS = {
     "finger": (FINGER, "end", "middle", "0.8"),
     "decimal finger": (FINGER, "end", "middle", "1.1393"),
@@ -40,8 +41,9 @@ ARMS = {
     "elbow of a shoulder that goes around": (AROUND, "elbow", "shoulder", "2"),
     "slow elbow": (WRIST, "elbow", "shoulder", "-0.7"),
     "differential": (WRIST, "bend", "roll", "0.5"),
+    "turret that turns again by half": (TURRET, "again", "yaw", "0.5"),
 }
-RARE = ("elbow of a shoulder that goes around", "differential")
+RARE = ("turret that turns again by half", "elbow of a shoulder that goes around", "differential")
 
 
 def geared(kind: str, folder: Path) -> Path:

@@ -28,12 +28,14 @@ def assemble(
     """The chain of a path of joints; `couplings` as `couple` gives them, `locked` in rad or m."""
     drivers = _drivers(path, couplings, locked)
     file_axes, T_last_tip = _axes(path, couplings, drivers, locked)
-    axes, T_last_tip = merged_axes(file_axes, T_last_tip)
+    joints = tuple(_actuated(driver) for driver in drivers)
+    spans = [joint.limits.upper - joint.limits.lower for joint in joints]
+    axes, T_last_tip = merged_axes(file_axes, T_last_tip, spans)
     return Chain(
         robot=robot,
         base_link=base,
         tip_link=tip,
-        joints=tuple(_actuated(driver) for driver in drivers),
+        joints=joints,
         axes=axes,
         T_last_tip=T_last_tip,
         locked=tuple(sorted((name, float(value)) for name, value in locked.items())),

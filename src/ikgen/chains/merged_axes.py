@@ -17,6 +17,7 @@ from ikgen.kinematics.fixed_order import dot, length, product
 from ikgen.kinematics.rigid import axis_motion, read_only
 from ikgen.model.arrays import Array
 from ikgen.model.chain import PRISMATIC, ChainAxis
+from ikgen.model.gear_ratio import is_whole
 
 __all__ = ["merged_axes"]
 
@@ -25,25 +26,28 @@ _SAME = 1e-12
 
 
 def merged_axes(
-    axes: Sequence[ChainAxis], T_last_tip: Array
+    axes: Sequence[ChainAxis], T_last_tip: Array, spans: Sequence[float]
 ) -> tuple[tuple[ChainAxis, ...], Array]:
-    """The axes of a chain and the transform (4, 4) behind them, the same motion with as few axes."""
+    """The axes of a chain and the transform (4, 4) behind them, the same motion with as few axes. `spans`:
+    how far (rad or m) the limits of each joint are apart."""
     merged: list[ChainAxis] = []
     T = np.eye(4)  # from where the last merged axis ends to the frame that the file has there
     k = 0
     while k < len(axes):
         axis = replace(axes[k], T_prev_axis=read_only(product(T, axes[k].T_prev_axis)))
-        one, T, used = _longest(axis, axes[k + 1 :])
+        one, T, used = _longest(axis, axes[k + 1 :], spans[axis.driver])
         merged.append(one)
         k += used
     return tuple(merged), read_only(product(T, T_last_tip))
 
 
-def _longest(first: ChainAxis, others: Sequence[ChainAxis]) -> tuple[ChainAxis, Array, int]:
+def _longest(
+    first: ChainAxis, others: Sequence[ChainAxis], span: float
+) -> tuple[ChainAxis, Array, int]:
     """An axis with as many of the next ones as are one with it: that one, the transform behind it, and how
     many they are."""
     best = first, np.eye(4), 1
-    motion = _Slide(first) if first.kind == PRISMATIC else _Turn(first)
+    motion = _Slide(first) if first.kind == PRISMATIC else _Turn(first, span)
     for used, axis in enumerate(others, start=2):
         if axis.driver != first.driver or axis.kind != first.kind or not motion.goes_on(axis):
             break
@@ -79,10 +83,13 @@ class _Slide:
 @dataclass(slots=True)
 class _Turn:
     """Turns of one joint about parallel axes behind each other: one where all of them turn it back by
-    nothing or as far as the last."""
+    nothing or as far as the last. Its whole turn has to turn each of them round, or to be more than the
+    limits' `span` (rad): values that it does not tell apart are different configurations else."""
 
     first: ChainAxis
+    span: float
     turn: float = 0.0  # how often q, at the last axis
+    each: list[float] = field(default_factory=list)  # how often q, of the axes
     rotation: Array = field(default_factory=lambda: np.eye(4))  # the constant one behind it
     moved: list[tuple[float, Array]] = field(default_factory=list)  # what turns how often
 
@@ -91,6 +98,7 @@ class _Turn:
 
     def _turn(self, axis: ChainAxis, sign: float) -> None:
         self.turn += sign * axis.multiplier
+        self.each.append(axis.multiplier)
         about = axis_motion(True, self.first.axis, sign * axis.offset)
         self.rotation = product(about, self.rotation)
 
@@ -119,6 +127,9 @@ class _Turn:
             elif length(across) > _SAME:
                 return None
         if abs(self.turn) <= _SAME:
+            return None
+        whole = all(is_whole(x / self.turn) for x in self.each)
+        if not whole and self.span * abs(self.turn) > 2.0 * np.pi + _SAME:
             return None
         T = read_only(product(self.first.T_prev_axis, before))
         return replace(self.first, T_prev_axis=T, multiplier=self.turn, offset=0.0), behind
