@@ -3360,6 +3360,18 @@ template <class Pack, int N> inline Pack least_root(const Pack (&diagonal)[N], c
   return x;
 }
 
+template <class Pack, int Rows, int Columns, int N>
+inline void take_products(const Pack (&J)[Rows][Columns], Pack (&S)[N][N]) noexcept {
+  constexpr bool by_rows = N == Rows;
+  for (int a = 0; a < N; ++a)
+    for (int b = 0; b <= a; ++b) {
+      S[a][b] = spread<kWidth<Pack>>(0.0);
+      for (int k = 0; k < (by_rows ? Columns : Rows); ++k)
+        S[a][b] = S[a][b] + (by_rows ? J[a][k] * J[b][k] : J[k][a] * J[k][b]);
+      S[b][a] = S[a][b];
+    }
+}
+
 template <class Pack, int N> inline Pack least_eigenvalue(Pack (&S)[N][N]) noexcept {
   Pack diagonal[N], squares[N];
   tridiagonal(S, diagonal, squares);
@@ -3377,13 +3389,7 @@ template <class Arm, int N> struct LeastSingularValue {
     for (int a = 0; a < kRows; ++a)
       if (Arm::kWholePose ? a < 3 : Arm::kRead[a][1] == 3)
         for (Pack& x : slope[a]) x = Arm::kSize * x;
-    for (int a = 0; a < kOrder; ++a)
-      for (int b = 0; b <= a; ++b) {
-        S[a][b] = spread<N>(0.0);
-        for (int k = 0; k < (kByRows ? Arm::kDof : kRows); ++k)
-          S[a][b] = S[a][b] + (kByRows ? slope[a][k] * slope[b][k] : slope[k][a] * slope[k][b]);
-        S[b][a] = S[a][b];
-      }
+    take_products(slope, S);
     if constexpr (kDependent) Arm::Task::fill(T, kFar, S);
     if constexpr (kInPlane) return sqrt(max(eigenvalue<kOrder - kRank>(S), 0.0));
     return sqrt(least_eigenvalue(S));
@@ -3396,7 +3402,6 @@ template <class Arm, int N> struct LeastSingularValue {
       kRank < kLess && (Arm::kWholePose || kRank < kRows - Arm::Columns::kRelations);
   static constexpr bool kDependent = !kInPlane && kRank < kLess;  // rows
   static constexpr int kOrder = kDependent ? kRows : kLess;
-  static constexpr bool kByRows = kOrder == kRows;
   static constexpr double kFar = 1e4;  // above the least
 };
 

@@ -9,6 +9,7 @@ one are taken.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import partial
 from itertools import product
 
@@ -48,27 +49,16 @@ def choose_coupled(frames: Array, motions: tuple[Motion, ...]) -> EliminationPla
     for all of a family (m, n + 1, 4, 4): those of the least degree that find all solutions, else those that
     find most; by half angles of both angles beside the coupled one where one alone does not do. None where
     no elimination applies."""
-    best: EliminationPlan | None = None
-    for both in (False, True):
-        plan = _chosen(frames[None] if frames.ndim == 3 else frames, motions, both=both)
-        if plan is not None and (best is None or plan.recall > best.recall):
-            best = plan
-        if best is not None and best.usable:
-            break
-    return best
-
-
-def _chosen(family: Array, motions: tuple[Motion, ...], *, both: bool) -> EliminationPlan | None:
-    """The best eliminations of one sort for a family (m, n + 1, 4, 4)."""
+    family = frames[None] if frames.ndim == 3 else frames
     rng, length = np.random.default_rng(0), typical_length(family[0])
     chains = [chain_of(member, motions, 6) for member in over(family, length)]
     probes = [_configurations(chain, max(_PROBES // len(family), 4), rng) for chain in chains]
     if not sum(map(len, probes)):
         return None  # singular everywhere
-    first, finder = read_only(family[0]), CoupledBothAngle if both else CoupledAngle
+    poses, first = forward(chains[0], rng.uniform(-np.pi, np.pi, (_POSES, 6))), read_only(family[0])
     best: EliminationPlan | None = None
-    for crowded, group in _eliminations(chains[0], rng, both=both):
-        find = finder(motions, crowded)
+    for both, crowded, group in _eliminations(chains[0], poses):
+        find = (CoupledBothAngle if both else CoupledAngle)(motions, crowded)
         plans = [Plan(length, (e,), _ALL_TURN, find, motions=motions) for e in group]
         parts = [_probe(*known, plans) for known in zip(family, chains, probes, strict=True)]
         hits = np.concatenate([part[0] for part in parts], axis=1)
@@ -97,29 +87,31 @@ def _probe(frames: Array, chain: Chain, q: Array, plans: list[Plan]) -> tuple[Ar
 
 
 _Crowded = tuple[tuple[float, int], ...]
-_Group = tuple[_Crowded, list[Elimination]]
+_Group = tuple[bool, _Crowded, list[Elimination]]
 
 
-def _eliminations(chain: Chain, rng: np.random.Generator, *, both: bool) -> list[_Group]:
+def _eliminations(chain: Chain, poses: Array) -> Iterator[_Group]:
     """The eliminations that apply, each with its degree, in groups of one degree and the same crowded
-    angles, the least degree first."""
+    angles, the least degree first; then those by half angles of both angles."""
     nodes: Array = 2.0 * np.pi / _NODES * np.arange(_NODES, dtype=float)
-    poses = forward(chain, rng.uniform(-np.pi, np.pi, (_POSES, 6)))
     joints = [motion[0] for motion in chain.motions]
     coupled, singles = coupled_and_others(chain.motions)
-    found: dict[tuple[int, _Crowded], list[Elimination]] = {}
-    vanishing = tall_determinants if both else coupled_determinants
-    for reverse, start in product((0, 1), range(5)):
-        at = joints.index(singles[start])
-        if coupled in (joints[at - 1], joints[(at + 1) % len(joints)]):
-            continue
-        one = chain.motions, [*chain.frames[:, None]]
-        determinants = partial(vanishing, *one, poses, (start, reverse, 0))
-        degree = _degree(determinants(nodes))
-        if 0 < degree <= _MOST_DEGREE:
-            crowded = crowded_angles(partial(neighbours, *one, (start, reverse, 0)), determinants)
-            found.setdefault((degree, crowded), []).append((start, reverse, degree))
-    return [(crowded, found[degree, crowded]) for degree, crowded in sorted(found)]
+    one = chain.motions, [*chain.frames[:, None]]
+    for both, vanishing in ((False, coupled_determinants), (True, tall_determinants)):
+        found: dict[tuple[int, _Crowded], list[Elimination]] = {}
+        for reverse, start in product((0, 1), range(5)):
+            at = joints.index(singles[start])
+            if coupled in (joints[at - 1], joints[(at + 1) % len(joints)]):
+                continue
+            determinants = partial(vanishing, *one, poses, (start, reverse, 0))
+            degree = _degree(determinants(nodes))
+            if 0 < degree <= _MOST_DEGREE:
+                crowded = crowded_angles(
+                    partial(neighbours, *one, (start, reverse, 0)), determinants
+                )
+                found.setdefault((degree, crowded), []).append((start, reverse, degree))
+        for degree, crowded in sorted(found):
+            yield both, crowded, found[degree, crowded]
 
 
 def _degree(values: NDArray[np.float64]) -> int:

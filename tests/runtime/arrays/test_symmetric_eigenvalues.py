@@ -8,15 +8,16 @@ import numpy as np
 import pytest
 from tests.support.routines import compiled_header, feed
 
-SECOND = r"""
+PROGRAM = r"""
 #include <cstdio>
 #include "arrays/lanes.hpp"
+#include "arrays/least_eigenvalue.hpp"
 #include "arrays/small_matrix.hpp"
 using namespace ikgen_runtime;
 int main() {
   double x;
   for (bool some = true; some;) {
-    Lanes<2> A[4][4];
+    Lanes<2> A[@order@][@order@];
     for (auto& row : A)
       for (auto& entry : row) {
         some = std::scanf("%lf", &x) == 1;
@@ -25,11 +26,17 @@ int main() {
       }
     if (!some) break;
     double out[2];
-    store(eigenvalue<1>(A), out);
+    store(@function@(A), out);
     std::printf("%.17g %.17g\n", out[0], out[1]);
   }
 }
 """
+
+
+def compiled(function: str, order: int, folder: Path) -> Path:
+    """The program of a function of matrices of this order, and of twice these beside them."""
+    text = PROGRAM.replace("@function@", function).replace("@order@", str(order))
+    return compiled_header(text, folder)
 
 
 def test_one_from_below(tmp_path: Path) -> None:
@@ -40,33 +47,10 @@ def test_one_from_below(tmp_path: Path) -> None:
     matrices = np.concatenate(
         [full @ full.transpose(0, 2, 1), flat @ flat.transpose(0, 2, 1), apart, np.zeros((1, 4, 4))]
     )
-    program = compiled_header(SECOND, tmp_path)
+    program = compiled("eigenvalue<1>", 4, tmp_path)
     found = np.array(feed(program, matrices.ravel().tolist()))
     expected = np.linalg.eigvalsh(matrices)[:, 1]
     np.testing.assert_allclose(found, np.stack([expected, 2.0 * expected], axis=1), atol=1e-13)
-
-
-LEAST = r"""
-#include <cstdio>
-#include "arrays/least_eigenvalue.hpp"
-using namespace ikgen_runtime;
-int main() {
-  double x;
-  for (bool some = true; some;) {
-    Lanes<2> A[ORDER][ORDER];
-    for (auto& row : A)
-      for (auto& entry : row) {
-        some = std::scanf("%lf", &x) == 1;
-        const double both[2] = {x, 2.0 * x};
-        entry = load<2>(both);
-      }
-    if (!some) break;
-    double out[2];
-    store(least_eigenvalue(A), out);
-    std::printf("%.17g %.17g\n", out[0], out[1]);
-  }
-}
-"""
 
 
 @pytest.mark.parametrize("order", [1, 2, 3, 6])
@@ -80,7 +64,7 @@ def test_the_least(order: int, tmp_path: Path) -> None:
     values[30:, 0] = 0.0
     matrices = np.einsum("nij,nj,nkj->nik", turned, values, turned)
     matrices = 0.5 * (matrices + matrices.transpose(0, 2, 1))
-    program = compiled_header(LEAST.replace("ORDER", str(order)), tmp_path)
+    program = compiled("least_eigenvalue", order, tmp_path)
     found = np.array(feed(program, matrices.ravel().tolist()))
     np.testing.assert_allclose(found, values[:, :1] * [1.0, 2.0], atol=3e-15)
     zero = feed(program, [0.0] * order**2)

@@ -34,7 +34,6 @@ inline Spectrum run_both_half_angles(const Chain& F, const Frame& T, const Turni
                                      Solutions& out) noexcept {
   constexpr double accept = 0.03;  // rad: imaginary part of roots that candidates come from
   constexpr double solved = 1e-7;  // of the equations' size: what a solution that keeps half its digits leaves of them
-  constexpr double twice = 1e-4;   // the same of the second direction of a null space of two dimensions
   Spectrum roots;
   roots.real = -1;
   const TallResultant M = lift_both(make_pencil(eq.E, eq.left));
@@ -51,9 +50,7 @@ inline Spectrum run_both_half_angles(const Chain& F, const Frame& T, const Turni
     const TallQr qr(at);
     const NullPlane plane = null_plane(qr);
     if (plane.least > (solved + root.off) * M.size) continue;  // of the combination alone
-    TallPairs pairs;
-    add_pair(to_complex(plane.first), pairs);
-    if (plane.next < twice * pivot_of(qr, 0)) split(plane, pairs);
+    const TallPairs pairs = pairs_in(qr, plane);
     TallSolutions led;
     for (Index j = 0; j < pairs.count; ++j) {
       if (left_over(at, pairs.z4[j], pairs.z5[j]) < solved * M.size) led.add({z3, pairs.z4[j], pairs.z5[j]});

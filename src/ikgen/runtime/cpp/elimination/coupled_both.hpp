@@ -25,24 +25,16 @@ struct SumsOfEquations {
   }
 
   double determinant(const Pencil& of) const noexcept {
-    const Tall M = matrix(of);
     Mat<16, 16> sums{};
-    for (Index i = 0; i < 16; ++i)
-      for (Index j = 0; j < 24; ++j)
-        for (Index k = 0; k < 16; ++k) sums(i, k) += share(i, j) * M(j, k);
+    add_product<24>(1.0, share, 0, 0, matrix(of), 0, sums);
     return signed_determinant(sums);
   }
 
   static TallPairs pairs(const Pencil& of) noexcept {
     constexpr double nearly = 0.03;  // what the first direction leaves over the most at which it may be a null vector
-    constexpr double twice = 1e-4;   // the same of the second direction of a null space of two dimensions
     const TallQr qr(matrix(of));
     const NullPlane plane = null_plane(qr);
-    TallPairs out;
-    if (!(plane.least < nearly * pivot_of(qr, 0))) return out;
-    add_pair(to_complex(plane.first), out);
-    if (plane.next < twice * pivot_of(qr, 0)) split(plane, out);
-    return out;
+    return plane.least < nearly * pivot_of(qr, 0) ? pairs_in(qr, plane) : TallPairs();
   }
 
   static Tall matrix(const Pencil& of) noexcept {

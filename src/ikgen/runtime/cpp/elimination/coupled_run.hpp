@@ -16,19 +16,11 @@ namespace elimination {
 
 template <Index N>
 inline double signed_determinant(Mat<N, N>& A) noexcept {
-  double det = 1.0;
+  std::array<Index, N> pivot{};  // not all is written of a matrix that is singular
+  double det = factor_by_rows(A, pivot);
   for (Index k = 0; k < N; ++k) {
-    Index best = k;
-    for (Index i = k + 1; i < N; ++i)
-      if (std::abs(A(i, k)) > std::abs(A(best, k))) best = i;
-    const double d = A(best, k);
-    if (d == 0.0) return 0.0;
-    det *= best != k ? -d : d;
-    for (Index j = 0; j < N && best != k; ++j) std::swap(A(k, j), A(best, j));
-    for (Index i = k + 1; i < N; ++i) {
-      const double x = A(i, k) / d;
-      for (Index j = k + 1; j < N; ++j) A(i, j) -= x * A(k, j);
-    }
+    if (pivot[k] != k) det = -det;
+    if (A(k, k) < 0.0) det = -det;
   }
   return det;
 }

@@ -48,21 +48,22 @@ struct Resultant {  // singular at the solutions' theta_3
 inline Resultant lift(const Pencil& p) noexcept { return {lift(p.f), lift(p.c), lift(p.s)}; }
 
 // LU with partial pivoting in place; returns |determinant|.
-inline double factor_by_rows(Square& A, std::array<Index, 12>& pivot) noexcept {
+template <Index N>
+inline double factor_by_rows(Mat<N, N>& A, std::array<Index, N>& pivot) noexcept {
   double det = 1.0;
-  for (Index k = 0; k < 12; ++k) {
+  for (Index k = 0; k < N; ++k) {
     Index best = k;
-    for (Index i = k + 1; i < 12; ++i)
+    for (Index i = k + 1; i < N; ++i)
       if (std::abs(A(i, k)) > std::abs(A(best, k))) best = i;
     pivot[k] = best;
     if (best != k)
-      for (Index j = 0; j < 12; ++j) std::swap(A(k, j), A(best, j));
+      for (Index j = 0; j < N; ++j) std::swap(A(k, j), A(best, j));
     const double d = A(k, k);
     if (d == 0.0) return 0.0;
     det *= std::abs(d);
-    for (Index i = k + 1; i < 12; ++i) {
+    for (Index i = k + 1; i < N; ++i) {
       const double x = A(i, k) /= d;
-      for (Index j = k + 1; j < 12; ++j) A(i, j) -= x * A(k, j);
+      for (Index j = k + 1; j < N; ++j) A(i, j) -= x * A(k, j);
     }
   }
   return det;

@@ -126,6 +126,15 @@ inline void split(const NullPlane& plane, TallPairs& out) noexcept {
   }
 }
 
+// The angles of the first direction, and of both where the null space has two dimensions.
+inline TallPairs pairs_in(const TallQr& qr, const NullPlane& plane) noexcept {
+  constexpr double twice = 1e-4;  // what the second direction leaves of it, over the most
+  TallPairs out;
+  add_pair(to_complex(plane.first), out);
+  if (plane.next < twice * pivot_of(qr, 0)) split(plane, out);
+  return out;
+}
+
 // What the angles leave of the equations.
 inline double left_over(const Tall& M, Complex z4, Complex z5) noexcept {
   const Complex h4 = std::sqrt(z4), h5 = std::sqrt(z5), k4 = h4 * z4, k5 = h5 * z5;

@@ -25,13 +25,7 @@ template <class Arm, int N> struct RowMeasures {
     for (int i = 0; i < kRows; ++i)
       for (int j = 0; j < kColumns; ++j)
         J[i][j] = (i + Arm::kFirstRow < 3 ? 1.0 / Arm::kSize : 1.0) * whole[i + Arm::kFirstRow][Arm::kMoving[j]];
-    for (int a = 0; a < kOrder; ++a)
-      for (int b = 0; b <= a; ++b) {
-        S[a][b] = spread<N>(0.0);
-        for (int k = 0; k < (kByRows ? kColumns : kRows); ++k)
-          S[a][b] = S[a][b] + (kByRows ? J[a][k] * J[b][k] : J[k][a] * J[k][b]);
-        S[b][a] = S[a][b];
-      }
+    take_products(J, S);
     return sqrt(least_eigenvalue(S));
   }
 
@@ -48,8 +42,7 @@ template <class Arm, int N> struct RowMeasures {
 
  private:
   static constexpr int kRows = Arm::kRows, kColumns = sizeof(Arm::kMoving) / sizeof(Arm::kMoving[0]);
-  static constexpr bool kByRows = kRows <= kColumns;
-  static constexpr int kOrder = kByRows ? kRows : kColumns;
+  static constexpr int kOrder = kRows < kColumns ? kRows : kColumns;
 };
 
 }  // namespace ikgen_runtime

@@ -59,8 +59,14 @@ class CoupledAngle:
             return pose, np.zeros((0, 6)), least, clear
         loop = CoupledLoop(self.motions, [rows_of(frame, pose) for frame in F], elimination)
         at = loop.equations(T[pose], angle[:, None])
-        k, pair = null_angles(lift(at.A[:, 0]), pose, angle)
+        k, pair, true = self._pairs(at.A[:, 0], pose, angle)
+        least = np.minimum(least, np.bincount(pose[true], minlength=len(T)))
         return pose[k], loop.completed(at, k, angle, pair), least, clear
+
+    def _pairs(self, A: Array, pose: Index, angle: Array) -> tuple[Index, Array, Flags]:
+        """theta_4, theta_5 from the equations A (k, 6, 9) at roots (k,) of poses (k,), both in order:
+        indices into k, pairs of angles (m, 2); and at which roots (k,) the equations have a solution."""
+        return *null_angles(lift(A), pose, angle), np.ones(len(A), dtype=bool)
 
     def _determinants(
         self, F: Sequence[Array], T: Array, elimination: Elimination, nodes: Array

@@ -14,12 +14,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ikgen.runtime.python.arm.chain_kinematics import Motion
-from ikgen.runtime.python.arrays.array_types import Array
+from ikgen.runtime.python.arrays.array_types import Array, Flags, Index
 from ikgen.runtime.python.elimination.both_half_angles import lift_both, null_pairs
 from ikgen.runtime.python.elimination.coupled_angle import CoupledAngle
 from ikgen.runtime.python.elimination.coupled_loop import CoupledLoop
-from ikgen.runtime.python.elimination.general_6r import Candidates, Elimination
-from ikgen.runtime.python.rows.solution_rows import rows_of
+from ikgen.runtime.python.elimination.general_6r import Elimination
 
 __all__ = ["CoupledBothAngle", "tall_determinants"]
 
@@ -33,22 +32,11 @@ class CoupledBothAngle(CoupledAngle):
     """Finds candidates by half angles of both angles beside the coupled one; an elimination's third number
     is the degree in that."""
 
-    def __call__(
-        self, F: Sequence[Array], T: Array, elimination: Elimination, _: tuple[bool, ...]
-    ) -> Candidates:
-        """Approximate solutions, as those of other eliminations; of as many frames F as rows and 1."""
-        pose, angle, least, clear = self._angles(F, T, elimination)
-        if not len(pose):
-            return pose, np.zeros((0, 6)), least, clear
-        loop = CoupledLoop(self.motions, [rows_of(frame, pose) for frame in F], elimination)
-        at = loop.equations(T[pose], angle[:, None])
-        sigma, rows = np.linalg.svd(lift_both(at.A[:, 0]))[1:]
+    def _pairs(self, A: Array, pose: Index, angle: Array) -> tuple[Index, Array, Flags]:
+        sigma, rows = np.linalg.svd(lift_both(A))[1:]
         near = np.flatnonzero(sigma[:, 15] < _NEAR * sigma[:, 0])
         k, pair = null_pairs(rows[near], sigma[near], pose[near], angle[near])[:2]
-        k = near[k]
-        true = pose[sigma[:, 15] < _TRUE * sigma[:, 0]]
-        least = np.minimum(least, np.bincount(true, minlength=len(T)))
-        return pose[k], loop.completed(at, k, angle, pair), least, clear
+        return near[k], pair, np.asarray(sigma[:, 15] < _TRUE * sigma[:, 0])
 
     def _determinants(
         self, F: Sequence[Array], T: Array, elimination: Elimination, nodes: Array
