@@ -174,9 +174,12 @@ def _branches(T: Sequence[Sequence[float]], q0: Row, held: Row) -> tuple[list[tu
     (t00, t01, t02, t03), (t10, t11, t12, t13), (t20, t21, t22, t23), _ = T
     # the radius
     c1 = t03 / a_2
+    # 
+    s1_plus = sqrt(max(1.0 - c1 * c1, 0.0))
+    y1 = a_2 * s1_plus
     for sigma_1 in (1.0, -1.0):
-        s1 = sigma_1 * sqrt(max(1.0 - c1 * c1, 0.0))
-        error = a_2 * s1 - t13
+        s1 = sigma_1 * s1_plus
+        error = sigma_1 * y1 - t13
         if not (1e-09 > abs(error)):
             continue
         rows.append(((atan2(s1, c1), t23), False))
@@ -199,9 +202,12 @@ def _branches_batch(T: Array, q0: Array, held: Array) -> tuple[Array, _Flags, _F
     singular: _Flags = np.zeros(lane, dtype=bool)
     # the radius
     c1 = t03 / a_2
+    # 
+    s1_plus = np.sqrt(np.maximum(1.0 - c1 * c1, 0.0))
+    y1 = a_2 * s1_plus
     sigma_1 = _branch_axis(0, 1)
-    s1 = sigma_1 * np.sqrt(np.maximum(1.0 - c1 * c1, 0.0))
-    error = a_2 * s1 - t13
+    s1 = sigma_1 * s1_plus
+    error = sigma_1 * y1 - t13
     valid = valid & (1e-09 > np.abs(error))
     q = (
         np.arctan2(s1, c1),

@@ -9,9 +9,9 @@ from tests.support.tables import table
 
 from ikgen.algebra.expression import Expr
 from ikgen.lowering.placement import LoweredLevel, Placement
-from ikgen.lowering.serialize import _without_idle_comments, serialize
+from ikgen.lowering.serialize import serialize
 from ikgen.program.ops import Op, Operand
-from ikgen.program.statements import Call, Comment, Let, Level, Require
+from ikgen.program.statements import Call, Let, Level, Require
 from ikgen.solver.solution_graph import SolutionGraph
 from ikgen.solver.solve import solve_chain
 
@@ -106,13 +106,6 @@ def test_results_flags_and_residuals_have_names(work: Placement) -> None:
     assert sum(map(len, names)) == 3 and list(lets(program.levels[0])) == [
         n for part in names for n in part
     ]
-
-
-def test_comments_of_nothing_are_left_out() -> None:
-    one, two, let = Comment("one"), Comment("two"), Let("x", 1.0)
-    assert _without_idle_comments([one, two, let, one]) == [two, let]
-    assert _without_idle_comments([one, let, two, let]) == [one, let, two, let]
-    assert _without_idle_comments([one]) == [] == _without_idle_comments([])
 
 
 def test_arguments_of_a_routine_are_written_in_its_call(work: Placement) -> None:

@@ -8,6 +8,7 @@ from ikgen.algebra.expression import Expr
 from ikgen.lowering.frames import file_frames
 from ikgen.lowering.placement import Placement, Requirement
 from ikgen.program.ops import BOOLEAN, Op, Operand
+from ikgen.program.remarks import remarked, with_remarks
 from ikgen.program.statements import (
     Call,
     Comment,
@@ -146,19 +147,8 @@ class _Serializer:
                 tuple(self.name(a) for a in atoms),
             )
         sigma = None if level.sigma is None else self.name(level.sigma)
-        solved = tuple(self.name(atom) for atom in level.solved)
-        return Level(level.branches, sigma, call, tuple(_without_idle_comments(body)), solved)
-
-
-def _without_idle_comments(body: list[Statement]) -> list[Statement]:
-    out: list[Statement] = []
-    for statement in body:
-        if isinstance(statement, Comment) and out and isinstance(out[-1], Comment):
-            out.pop()
-        out.append(statement)
-    if out and isinstance(out[-1], Comment):
-        out.pop()
-    return out
+        solved = tuple(self.name(atom) for atom in level.solved if atom.id in self._live)
+        return Level(level.branches, sigma, call, with_remarks(remarked(body)), solved)
 
 
 def serialize(work: Placement, values: list[tuple[int, Expr]]) -> Program:

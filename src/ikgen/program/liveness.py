@@ -15,6 +15,7 @@ def _reads(level: Level) -> Iterator[Operand]:
     """Operands of a level that count whether or not anything else reads them."""
     if level.call is not None:
         yield from level.call.arguments
+    yield from level.solved
     yield from (s.condition for s in level.body if isinstance(s, Require))
 
 

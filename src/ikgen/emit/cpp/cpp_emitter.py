@@ -19,6 +19,7 @@ from ikgen.emit.printer import expression
 from ikgen.emit.rendering import render
 from ikgen.emit.solver_module import SolverModule
 from ikgen.kinematics.column_blocks import column_blocks
+from ikgen.program.branch_symmetry import with_shared_branches
 from ikgen.program.margins import fold_margins
 from ikgen.program.ops import Op
 from ikgen.program.policy import SolvePolicy
@@ -54,7 +55,7 @@ def emit(module: SolverModule) -> dict[str, str]:
 
 def emit_header(module: SolverModule) -> str:
     """The text of `<name>_ik.hpp`."""
-    most, module = module.max_solutions, _in_packs(module)
+    most, module = module.max_solutions, _in_lanes(module)
     branches = [level.branches for level in module.program.levels[1:]]
     shell = _shell(module, branches, most)
     runtime = bundle_for(shell, _known_facts(module), _headers(module), _SYSTEM)
@@ -63,13 +64,19 @@ def emit_header(module: SolverModule) -> str:
     return with_policy.replace(_RUNTIME, runtime.body)
 
 
-def _in_packs(module: SolverModule) -> SolverModule:
-    """The module with lanes in powers of two: those that a routine's roots leave over stay empty."""
+_FEW_LANES = 8
+"""Lanes of a level below which half of them cost as much: they fill one vector either way."""
+
+
+def _in_lanes(module: SolverModule) -> SolverModule:
+    """The module with lanes in powers of two: those that a routine's roots leave over stay empty. What both
+    branches of a level share is computed before it."""
     levels = tuple(
         replace(level, branches=1 << (level.branches - 1).bit_length())
         for level in module.program.levels
     )
-    return replace(module, program=replace(module.program, levels=levels))
+    program = replace(module.program, levels=levels)
+    return replace(module, program=with_shared_branches(program, _FEW_LANES))
 
 
 def _shell(module: SolverModule, branches: list[int], most: int) -> str:

@@ -141,9 +141,9 @@ class ProgramText:
 
     def _meeting(self, level: Level, width: int) -> None:
         """Whether the two branches of a level meet, which makes equal rows."""
-        names = [n for n in level.solved if n in self.live]
-        if names:
-            self.flags["meeting"].append(f"meeting<Policy, {width} * P>({', '.join(names)})")
+        if level.solved:
+            names = ", ".join(level.solved)
+            self.flags["meeting"].append(f"meeting<Policy, {width} * P>({names})")
 
     def _let(self, name: str, text: str) -> None:
         self._statement(f"const auto {name} = {text};")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
+from dataclasses import fields, replace
 from typing import TYPE_CHECKING, Any
 
 from ikgen.elimination.routine import runtime_policy
@@ -20,6 +20,7 @@ from ikgen.emit.python.settled_branches import SOME, Facts
 from ikgen.emit.rendering import render
 from ikgen.emit.solver_module import SolverModule
 from ikgen.emit.twist_numbers import twist_numbers
+from ikgen.program.branch_symmetry import with_shared_branches
 from ikgen.runtime.python.arm.solve_policy import Policy
 
 if TYPE_CHECKING:
@@ -42,7 +43,8 @@ def emit_module(module: SolverModule) -> str:
 
 def shell_values(module: SolverModule) -> dict[str, Any]:
     """What the templates say of an arm."""
-    program = module.program
+    program = with_shared_branches(module.program)
+    module = replace(module, program=program)
     return {
         "m": module,
         "joints": module.dh.joints,
