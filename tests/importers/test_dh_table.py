@@ -310,3 +310,16 @@ def test_names_without_numbers_are_told_with_those_of_the_code(tmp_path: Path) -
     (said,) = (w for w in source.warnings if "symbols" in w)
     words = "kept as symbols, without numbers: a2 (a_2 in code), dt (dt_ in code), l_3"
     assert said == f"{path}: {words}" and set(dh.symbols) == {"a_2", "dt_", "l_3"}
+
+
+def test_a_name_without_a_number_is_a_length_or_an_angle(tmp_path: Path) -> None:
+    row = '[[joints]]\ntype = "revolute"\nalpha = {}\na = 0\nd = {}\ntheta = 0\n'
+    rows = row.format(0, '"-beta"') + row.format('"beta"', 0)
+    path = tmp_path / "arm.toml"
+    path.write_text(f'name = "arm"\nconvention = "standard"\n{rows}')
+    with pytest.raises(BadDescriptionError) as caught:
+        read_dh_table(path)
+    assert "'beta' is an angle here, and a length in row 1 ('d')" in caught.value.message
+    assert caught.value.line == path.read_text().splitlines().index('alpha = "beta"') + 1
+    path.write_text(f'name = "arm"\nconvention = "standard"\n[parameters]\nbeta = 0.3\n{rows}')
+    assert [one.name for one in read_dh_table(path)[1].joints] == ["theta_1", "theta_2"]

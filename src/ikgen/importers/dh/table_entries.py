@@ -71,6 +71,7 @@ def read_entries(document: TableDocument) -> tuple[Entry, ...]:
         limits = read_limits(document, i, joint, parameters)
         entries.append(Entry(kind, name, **parts, limits=limits))
     _check_names(document, entries)
+    _check_kinds(document, entries, parameters)
     _check_parameters(document, entries, parameters)
     return tuple(entries)
 
@@ -140,6 +141,30 @@ def _check_names(document: TableDocument, entries: list[Entry]) -> None:
                 "give every joint a name of its own", joint=i, key="name",
             )  # fmt: skip
         seen[entry.name] = i
+
+
+def _check_kinds(
+    document: TableDocument, entries: list[Entry], parameters: Mapping[str, float | None]
+) -> None:
+    """A name without a number stands for a length or for an angle: samples of these are not alike."""
+    lengths = {
+        name: (i, key)
+        for i, entry in enumerate(entries, start=1)
+        for key in ("a", "d")
+        for name, _ in getattr(entry, key).terms
+        if name not in parameters
+    }
+    for i, entry in enumerate(entries, start=1):
+        for key in ("alpha", "theta"):
+            for name, _ in getattr(entry, key).terms:
+                if name in lengths:
+                    row, other = lengths[name]
+                    raise document.error(
+                        f"'{name}' is an angle here, and a length in row {row} ('{other}')",
+                        "give it a number under [parameters], or call one of them otherwise",
+                        joint=i,
+                        key=key,
+                    )
 
 
 def _check_parameters(
