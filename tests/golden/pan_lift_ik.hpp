@@ -743,8 +743,9 @@ template <class Arm> struct FlatSteps {
       ab += row[a] * row[b];
     }
     if (!(std::abs(ab) > kAcross * std::sqrt(aa * bb))) return false;
-    const double half = 0.5 * (bb - aa) / ab, t = std::copysign(1.0, half) / (std::abs(half) + std::hypot(1.0, half));
-    const double c = 1.0 / std::hypot(1.0, t), s = c * t;
+    const double half = 0.5 * (bb - aa) / ab;
+    const double t = std::copysign(1.0, half) / (std::abs(half) + std::sqrt(1.0 + half * half));
+    const double c = 1.0 / std::sqrt(1.0 + t * t), s = c * t;
     const auto turn = [&](double* row) noexcept {
       const double x = row[a], y = row[b];
       row[a] = c * x - s * y;
