@@ -91,20 +91,28 @@ def _classes(name: str, read: Callable[[str], Measured]) -> str:
 
 
 def _speed(read: Callable[[str], Measured]) -> str:
-    measured = read("speed_by_class")
-    found = measured.found
+    measured, narrow = read("speed_by_class"), read("speed_by_class_avx2")
+    found, other = measured.found, narrow.found
+    narrower = {c["family"]: [f"{c[x]:.2f}" for x in _RATIOS] for c in other["classes"]}
     rows = [
         [_class(c["family"]), str(c["arms"]), f"{c['single']:,.0f}", f"{c['worst_single']:,.0f}",
-         f"{c['batch']:,.0f}", f"{c['ratio']:.2f}", f"{c['worst_ratio']:.2f}"]
+         f"{c['batch']:,.0f}", *(f"{c[x]:.2f}" for x in _RATIOS), *narrower[c["family"]]]
         for c in found["classes"]
     ]  # fmt: skip
     head = (
         "class", "arms", "ns a pose, median", "longest", "in batches, median",
-        "of the baseline's", "longest",
+        "of the baseline's", "longest", f"{other['instructions']}: of the baseline's", "longest",
     )  # fmt: skip
-    words = f"\nThe baseline takes {found['baseline']:.0f} ns, all with {found['instructions']}.\n"
-    left = f"Not timed: {', '.join(found['left'])}.\n" if found["left"] else ""
-    return _table(head, rows) + words + left + _source(measured)
+    words = (
+        f"\nThe baseline takes {found['baseline']:.0f} ns with {found['instructions']}, "
+        f"{other['baseline']:.0f} ns on the other machine, which has {other['instructions']}.\n"
+    )
+    left = [*found["left"], *other["left"]]
+    untimed = f"Not timed: {', '.join(left)}.\n" if left else ""
+    return _table(head, rows) + words + untimed + _source(measured, narrow)
+
+
+_RATIOS = ("ratio", "worst_ratio")
 
 
 def _tables(read: Callable[[str], Measured]) -> str:

@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 from benchmarks.command_line import REPOSITORY, Source
 from benchmarks.cpp_speed import FLAGS
-from benchmarks.speed_by_class import Timed, by_class, instructions, table, time_arm
+from benchmarks.results import read_result
+from benchmarks.speed_by_class import RECORDS, Timed, by_class, instructions, table, time_arm
 from tests.support.solving import NO_COMPILER
 
 
@@ -39,3 +40,11 @@ def test_a_header_is_timed_beside_a_baseline_that_is_right() -> None:
     assert isinstance(found, Timed)
     assert found.rows > 4.0 and found.single > 0.0 and found.baseline > 0.0
     assert isinstance(time_arm(Source("none", "", Path("nowhere.urdf")), ["-O1"]), str)
+
+
+def test_records_of_machines_with_wide_vectors_and_without_stand_side_by_side() -> None:
+    wide, narrow = (read_result(name) for name in RECORDS.values())
+    assert [wide.found["instructions"], narrow.found["instructions"]] == list(RECORDS)
+    assert [c["family"] for c in wide.found["classes"]] == [
+        c["family"] for c in narrow.found["classes"]
+    ]
