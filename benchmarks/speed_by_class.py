@@ -145,6 +145,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     if options.record and (options.family or options.each):
         parser.error("--record is for the whole collection")
+    widest = instructions(FLAGS[options.flags]) if options.record else ""
+    if options.record and widest not in RECORDS:
+        parser.error(f"--record is for {' and '.join(RECORDS)}, not for {widest}")
     timed: list[Timed] = []
     left: list[str] = []
     arms = chosen(options.family, options.each)
@@ -166,9 +169,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if options.record:
         chosen_options = f"--flags {options.flags} --jobs {options.jobs}"
         command = f"python -m benchmarks.speed_by_class {chosen_options}"
-        widest = instructions(FLAGS[options.flags])
         write_result(
-            RECORDS.get(widest, RECORDS["AVX2"]),
+            RECORDS[widest],
             command,
             {
                 "instructions": widest,

@@ -174,7 +174,6 @@ def _branches(T: Sequence[Sequence[float]], q0: Row, held: Row) -> tuple[list[tu
     (t00, t01, t02, t03), (t10, t11, t12, t13), (t20, t21, t22, t23), _ = T
     # the radius
     c1 = t03 / a_2
-    # 
     s1_plus = sqrt(max(1.0 - c1 * c1, 0.0))
     y1 = a_2 * s1_plus
     for sigma_1 in (1.0, -1.0):
@@ -202,7 +201,6 @@ def _branches_batch(T: Array, q0: Array, held: Array) -> tuple[Array, _Flags, _F
     singular: _Flags = np.zeros(lane, dtype=bool)
     # the radius
     c1 = t03 / a_2
-    # 
     s1_plus = np.sqrt(np.maximum(1.0 - c1 * c1, 0.0))
     y1 = a_2 * s1_plus
     sigma_1 = _branch_axis(0, 1)

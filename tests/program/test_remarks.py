@@ -21,3 +21,8 @@ def test_a_comment_stands_above_the_first_of_its_statements() -> None:
     x, y = Let("x", 1.0), Let("y", 2.0)
     assert list(remarked([x, Comment("one"), y, x])) == [("", x), ("one", y), ("one", x)]
     assert shown([x, Comment("one"), y, x]) == [x, Comment("one"), y, x]
+
+
+def test_what_stands_under_none_needs_none() -> None:
+    x, y = Let("x", 1.0), Let("y", 2.0)
+    assert with_remarks([("one", x), ("", y)]) == (Comment("one"), x, y)

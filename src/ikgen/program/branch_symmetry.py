@@ -3,8 +3,8 @@
 Where an unknown is told by `sigma` = +1 or -1, much that follows from it is the same in both branches, or
 the same but for its sign: of a spherical wrist all but its flip, of an elbow the size of its sine. Such
 values move to the level before, once for both, and leave the signs. A product with a sign is exact: numbers
-stay as they are to the last bit, but for angles whose cosine and sine both change their sign: these are
-half a turn apart.
+stay as they are to the last bit, but for angles whose cosine changes its sign: these are taken from half a
+turn.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 from functools import reduce
 from operator import xor
 
-from ikgen.program.liveness import live_names, trimmed
+from ikgen.program.liveness import trimmed
 from ikgen.program.ops import BOOLEAN, Op, Operand, operand_names
 from ikgen.program.remarks import Remarked, remarked, with_remarks
 from ikgen.program.statements import Let, Level, Program, Require
@@ -56,8 +56,6 @@ class _Sharing:
         self.home: dict[str, int] = {}
         self.parts: dict[str, Part] = {}
         self.bodies: list[list[Remarked]] = [[] for _ in program.levels]
-        self.signs_by_choice: dict[tuple[Operand, Signs, Signs], Signs] = {}
-        self.products: dict[Signs, str] = {}
         self.known: dict[Operand, str] = {}
         self._made = 0
         self._remark = ""
@@ -69,14 +67,10 @@ class _Sharing:
 
     def result(self) -> Program:
         """The Program without what nothing reads any more."""
-        levels = [
+        levels = (
             replace(level, body=with_remarks(body), solved=self._solved(level))
             for level, body in zip(self.program.levels, self.bodies, strict=True)
-        ]
-        live = live_names(replace(self.program, levels=tuple(levels)))
-        for index, body in enumerate(self.bodies):
-            kept = [s for s in body if not isinstance(s[1], Let) or s[1].name in live]
-            levels[index] = replace(levels[index], body=with_remarks(kept))
+        )
         return trimmed(replace(self.program, levels=tuple(levels)))
 
     def _solved(self, level: Level) -> tuple[str, ...]:
@@ -132,11 +126,13 @@ class _Sharing:
             return value
         if value in self.known:
             return self.known[value]
-        if not name:
-            self._made += 1
-            name = f"y{self._made}"
+        name = name or self._new_name("y")
         self._take(self._level(value), Let(name, value, value.op in BOOLEAN))
         return name
+
+    def _new_name(self, stem: str) -> str:
+        self._made += 1
+        return f"{stem}{self._made}"
 
     # -- operands --------------------------------------------------------------------------------
 
@@ -166,29 +162,25 @@ class _Sharing:
         value = Op("select", plus)
         if signs[1] == signs[2]:
             return Part(signs[1], value)
-        key = (plus[0], signs[1], signs[2])
-        if key not in self.signs_by_choice:
-            either = (plus[0], self._product(signs[1], index), self._product(signs[2], index))
-            self._made += 1
-            name = f"sign_{self._made}"
-            self._put(index, Let(name, Op("select", either)))
-            self.signs_by_choice[key] = frozenset({name})
-            self.parts[name] = Part(frozenset({name}), 1.0)
-        return Part(self.signs_by_choice[key], value)
+        either = (plus[0], self._product(signs[1], index), self._product(signs[2], index))
+        name = self._sign(Op("select", either), index)
+        self.parts[name] = Part(frozenset({name}), 1.0)
+        return Part(self.parts[name].signs, value)
 
     def _product(self, signs: Signs, index: int) -> Operand:
         """The product of signs of a level."""
-        if len(signs) < 2:
-            return next(iter(signs), 1.0)
-        if signs not in self.products:
-            self._made += 1
-            self.products[signs] = f"sign_{self._made}"
-            first, *others = sorted(signs)
-            value: Operand = first
-            for sign in others:
-                value = Op("mul", (value, sign))
-            self._put(index, Let(self.products[signs], value))
-        return self.products[signs]
+        if not signs:
+            return 1.0
+        product, *others = sorted(signs)
+        for sign in others:
+            product = self._sign(Op("mul", (product, sign)), index)
+        return product
+
+    def _sign(self, value: Op, index: int) -> str:
+        """A value of a level that is +1 or -1, by a name."""
+        if value not in self.known:
+            self._put(index, Let(self._new_name("sign_"), value))
+        return self.known[value]
 
     def _signed(self, part: Part, index: int) -> Operand:
         """The value of a part."""
@@ -215,18 +207,20 @@ class _Sharing:
         if y is None or x is None or (y.signs and x.signs and y.signs != x.signs):
             return None
         plus = self._shared(Op("atan2", (y.plus, x.plus)))
-        turn = Op("gt", (plus, 0.0))
-        if y.signs == x.signs:
-            half = (Op("sub", (plus, math.pi)), Op("add", (plus, math.pi)))
-            minus = Op("select", (turn, *half))
-        elif y.signs:
-            minus = Op("select", (Op("gt", (plus, _BELOW_PI)), plus, Op("neg", (plus,))))
-        else:
-            turn = Op("gt", (0.0, plus))
-            minus = Op("select", (turn, *(Op("sub", (pi, plus)) for pi in (-math.pi, math.pi))))
-        other = self._shared(minus)
+        minus = self._shared(Op("select", _other_angle(plus, bool(y.signs), bool(x.signs))))
         sign = self._product(y.signs | x.signs, index)
-        return Op("select", (self._shared(Op("gt", (0.0, sign))), other, plus))
+        return Op("select", (self._shared(Op("gt", (0.0, sign))), minus, plus))
+
+
+def _other_angle(angle: Operand, sine: bool, cosine: bool) -> tuple[Op, Operand, Operand]:
+    """The angle in (-pi, pi] whose sine or cosine has the other sign, or both, as a condition, what it is
+    where that holds, and what elsewhere."""
+    if not cosine:
+        return Op("gt", (angle, _BELOW_PI)), angle, Op("neg", (angle,))
+    if not sine:
+        below = Op("gt", (0.0, angle))
+        return below, Op("sub", (-math.pi, angle)), Op("sub", (math.pi, angle))
+    return Op("gt", (angle, 0.0)), Op("sub", (angle, math.pi)), Op("add", (angle, math.pi))
 
 
 def _signs(op: str, signs: Sequence[Signs]) -> Signs | None:

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from ikgen.program.ops import Operand, operand_names
-from ikgen.program.statements import Let, Level, Program, Require
+from ikgen.program.remarks import remarked, with_remarks
+from ikgen.program.statements import Let, Level, Program, Require, Statement
 
 __all__ = ["live_names", "trimmed"]
 
@@ -38,10 +39,16 @@ def live_names(program: Program) -> set[str]:
 
 
 def trimmed(program: Program) -> Program:
-    """The Program without inputs and values of joints that nothing reads."""
+    """The Program without inputs, values of joints and values of levels that nothing reads."""
     live = live_names(program)
+
+    def kept(body: tuple[Statement, ...]) -> tuple[Statement, ...]:
+        stay = (s for s in remarked(body) if isinstance(s[1], Require) or s[1].name in live)
+        return with_remarks(stay)
+
     return replace(
         program,
+        levels=tuple(replace(level, body=kept(level.body)) for level in program.levels),
         inputs=tuple(one for one in program.inputs if one.name in live),
         prelude=tuple(let for let in program.prelude if let.name in live),
     )

@@ -27,7 +27,7 @@ def with_remarks(body: Iterable[Remarked]) -> tuple[Statement, ...]:
     out: list[Statement] = []
     last = ""
     for remark, statement in body:
-        if remark != last:
+        if remark not in ("", last):
             out.append(Comment(remark))
         last = remark
         out.append(statement)

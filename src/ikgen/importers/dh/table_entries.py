@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -148,23 +148,25 @@ def _check_kinds(
 ) -> None:
     """A name without a number stands for a length or for an angle: samples of these are not alike."""
     lengths = {
-        name: (i, key)
-        for i, entry in enumerate(entries, start=1)
-        for key in ("a", "d")
-        for name, _ in getattr(entry, key).terms
-        if name not in parameters
+        name: (i, key) for i, key, name in _terms(entries, ("a", "d")) if name not in parameters
     }
+    for i, key, name in _terms(entries, ("alpha", "theta")):
+        if name in lengths:
+            row, other = lengths[name]
+            raise document.error(
+                f"'{name}' is an angle here, and a length in row {row} ('{other}')",
+                "give it a number under [parameters], or call one of them otherwise",
+                joint=i,
+                key=key,
+            )
+
+
+def _terms(entries: list[Entry], keys: Sequence[str] = ENTRIES) -> Iterator[tuple[int, str, str]]:
+    """Row (from 1), key and name of every parameter in these entries."""
     for i, entry in enumerate(entries, start=1):
-        for key in ("alpha", "theta"):
+        for key in keys:
             for name, _ in getattr(entry, key).terms:
-                if name in lengths:
-                    row, other = lengths[name]
-                    raise document.error(
-                        f"'{name}' is an angle here, and a length in row {row} ('{other}')",
-                        "give it a number under [parameters], or call one of them otherwise",
-                        joint=i,
-                        key=key,
-                    )
+                yield i, key, name
 
 
 def _check_parameters(
@@ -174,17 +176,13 @@ def _check_parameters(
     written = " ".join(str(v) for joint in document.joints for v in joint.values())
     unused = [p for p in parameters if not re.search(rf"\b{re.escape(p)}\b", written)]
     plain = {re.sub("_", "", p).lower(): p for p in unused}
-    for i, entry in enumerate(entries, start=1):
-        for key in ENTRIES:
-            for name, _ in getattr(entry, key).terms:
-                close = plain.get(re.sub("_", "", name).lower())
-                if name not in parameters and name.isidentifier() and close:
-                    raise document.error(
-                        f"no parameter named '{name}'", f"did you mean '{close}'?", joint=i, key=key
-                    )
-    symbols = sorted(
-        {n for e in entries for k in ENTRIES for n, _ in getattr(e, k).terms} - set(parameters)
-    )
+    for i, key, name in _terms(entries):
+        close = plain.get(re.sub("_", "", name).lower())
+        if name not in parameters and name.isidentifier() and close:
+            raise document.error(
+                f"no parameter named '{name}'", f"did you mean '{close}'?", joint=i, key=key
+            )
+    symbols = sorted({name for _, _, name in _terms(entries)} - set(parameters))
     names = [_in_code(n) for n in symbols if n.isidentifier()]
     if names and parameters:
         document.warn(f"kept as symbols, without numbers: {', '.join(names)}")
