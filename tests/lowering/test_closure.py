@@ -91,6 +91,18 @@ def test_differences_that_vanish_or_are_not_read_are_left_out() -> None:
     assert [e.id for e in found] == [g.sub(pose, half).id, g.sub(half, g.const(2.0)).id]
 
 
+def test_an_unknown_is_not_compared_with_what_it_was_solved_from() -> None:
+    work = two_joints()
+    g = work.g
+    x, y = (g.atom("pose", key, np.linspace(0.1, 0.9, g.probes) ** k, unknown=False)
+            for k, key in enumerate(("one", "other"), start=1))  # fmt: skip
+    solved = g.atom("pose", "solved", np.linspace(0.1, 0.9, g.probes), unknown=False)
+    work.definition[solved.id] = g.sub(x, y)
+    same = [(solved, g.sub(x, y)), (g.sub(y, x), g.neg(solved)), (g.neg(solved), g.sub(y, x))]
+    assert not _differences(work, same)
+    assert len(_differences(work, [(g.neg(solved), g.sub(x, y)), (solved, g.sub(y, x))])) == 2
+
+
 def test_norms_are_bounded_at_the_level_that_they_are_of(monkeypatch: pytest.MonkeyPatch) -> None:
     work = two_joints()
     g, part = work.g, work.g.add(work.g.const(0.5), work.system.equations[0].left)

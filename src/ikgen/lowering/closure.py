@@ -96,6 +96,13 @@ def _differences(work: Placement, pairs: list[tuple[Expr, Expr]]) -> list[Expr]:
     for a, b in pairs:
         if not work.knowledge.known_expr(a) or not work.knowledge.known_expr(b):
             continue
-        if g.sub(work.defined(a), work.defined(b)) is not g.zero:
+        if g.sub(_meaning(work, a), _meaning(work, b)) is not g.zero:
             out.append(g.sub(a, b))
     return out
+
+
+def _meaning(work: Placement, entry: Expr) -> Expr:
+    """What an entry stands for, a solved unknown's sine or cosine with either sign."""
+    if entry.op == "neg":
+        return work.g.neg(work.defined(entry.args[0]))
+    return work.defined(entry)
