@@ -15,11 +15,17 @@ from tests.support.small_robots import write_robot
 from tests.support.solving import FIXTURES
 
 from ikgen.cli.main import run
+from ikgen.derivation.closed_forms import closed_form
 from ikgen.derivation.derive import derive
-from ikgen.derivation.held_needs import needs_held
+from ikgen.derivation.held_needs import needs_held, rounding_decides
 from ikgen.derivation.inspection import inspect_robot
+from ikgen.derivation.progress import silent
 from ikgen.derivation.read import read
-from ikgen.errors import UsageError
+from ikgen.derivation.remedies import remedies
+from ikgen.derivation.task_forms import Demand
+from ikgen.emit.derivation import Unsolved
+from ikgen.errors import UnsolvedChainError, UsageError
+from ikgen.kinematics.classify import classify
 from ikgen.records.request import Request
 from ikgen.tasks import find_task
 from ikgen.tasks.fitting import freedoms_barely_moved, freedoms_fixed
@@ -119,6 +125,56 @@ def test_exact_axes_leave_nothing_barely_moved(tmp_path: Path) -> None:
         run(["from-urdf", str(robot), "--task", "rotation", "-o", str(tmp_path), "--no-verify"])
         == 0
     )
+
+
+def rounded_planar_arm(path: Path) -> Path:
+    """Four parallel axes in a plane, two of them tilted by what few digits leave."""
+    joints = [(f"j{i}", "revolute", "0 1 0", "0.4 0 0", (-2.8, 2.8)) for i in range(4)]
+    text = serial_urdf(path.stem, joints)
+    for joint, turn in (("j1", "2e-6 0 -2e-6"), ("j3", "0 0 1e-6")):
+        head, tail = text.split(f'<joint name="{joint}"')
+        tail = re.sub(
+            r'<origin xyz="([^"]*)"[^>]*>', rf'<origin xyz="\1" rpy="{turn}"/>', tail, count=1
+        )
+        text = f'{head}<joint name="{joint}"{tail}'
+    path.write_text(text)
+    return path
+
+
+def test_a_whole_pose_that_nobody_asked_for_is_refused_at_once_where_rounding_decides_it(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    robot = rounded_planar_arm(tmp_path / "arm.urdf")
+    command = ["from-urdf", str(robot), "-o", str(tmp_path / "out")]
+    assert run(command) == 3
+    said = capsys.readouterr().err
+    assert "the joints move 3 of the 6 freedoms that the task fixes, and the others by no" in said
+    assert "verifying" not in said and "trying" not in said
+    advice = re.search(r"hint: ikgen from-urdf \S+ --lock (\S+)=(\S+)\n", said)
+    assert advice is not None
+    found = inspect_robot(Request(robot))
+    assert not found.attempts
+    assert found.hindrance is not None and f"--lock {advice[1]}" in found.hindrance.hint
+    assert run([*command, "--lock", f"{advice[1]}={advice[2]}"]) == 0
+
+
+def test_a_joint_to_hold_becomes_one_to_lock_where_rounding_decides(tmp_path: Path) -> None:
+    robot = rounded_planar_arm(tmp_path / "arm.urdf")
+    for task in (None, "pose"):
+        with pytest.raises(UnsolvedChainError) as caught:
+            derive(Request(robot, task=task, free={"j1": 0.5}))
+        assert caught.value.hint.endswith("--lock j1=0.5") and "--free" not in caught.value.hint
+
+
+def test_no_task_is_proposed_that_is_refused_when_asked_for(tmp_path: Path) -> None:
+    robot = rounded_planar_arm(tmp_path / "arm.urdf")
+    reading, task = read(Request(robot)), find_task("pose")
+    form = closed_form(reading, Demand("pose", (), silent))
+    geometry = classify(reading.dh)
+    left = Unsolved(reading, geometry, task, form.graph, "arm", robot.name, ())
+    proposed = {attempt.task for attempt in remedies(left, silent)}
+    assert not any(rounding_decides(reading.dh, find_task(name)) for name in proposed)
+    assert rounding_decides(reading.dh, find_task("position-direction"))
 
 
 def test_a_tool_axis_is_refused_at_once_where_the_whole_pose_is_left(tmp_path: Path) -> None:

@@ -40,11 +40,13 @@ def derive(
     there is no closed form, or none of a task that an arm can do whose joints the request holds.
     """
     from ikgen.kinematics.classify import classify
+    from ikgen.tasks import find_task
 
     reading = _checked(request, progress, reading)
     file_class = classify(reading.dh).name
     progress("derive", file_class)
-    check_task(request, reading.dh)
+    if request.named_task is not None:
+        check_task(request, reading, find_task(request.named_task))
     check_tool_axis(request, reading.dh)
     demand = Demand(request.named_task, passed_over, progress, tuple(refused), request.tool_axis)
     found = closed_form(reading, demand)
@@ -56,6 +58,7 @@ def derive(
         from ikgen.derivation.unsolved import unsolved_error
 
         raise unsolved_error(_unsolved(name, request, found, geometry), request)
+    check_task(request, reading, found.task)
     again = report_command(request, found.reading, found.task)
     check_held(request, found.reading.dh, found.task, passed_over)
     found, program = settled_form(found, progress)

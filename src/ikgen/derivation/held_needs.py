@@ -10,11 +10,12 @@ from ikgen.errors import UnsolvedChainError
 from ikgen.model.counted import counted
 
 if TYPE_CHECKING:
+    from ikgen.emit.derivation import Reading
     from ikgen.model.dh import DHChain
     from ikgen.records.request import Request
     from ikgen.tasks import Task
 
-__all__ = ["check_held", "check_task", "check_tool_axis", "needs_held"]
+__all__ = ["check_held", "check_task", "check_tool_axis", "needs_held", "rounding_decides"]
 
 
 def needs_held(dh: DHChain, task: Task) -> bool:
@@ -26,31 +27,47 @@ def needs_held(dh: DHChain, task: Task) -> bool:
     return freedoms_moved(replace(dh, free=()), task) > freedoms_moved(dh, task)
 
 
-def check_task(request: Request, dh: DHChain) -> None:
-    """Raises `UnsolvedChainError` for a task of which the arm moves some freedoms only barely, and the
-    others by more joints than they need: joints that were held would decide the former, and no path that
-    moves them could be followed."""
-    from ikgen.tasks import find_task
-    from ikgen.tasks.fitting import (
-        fitting_tasks,
-        freedoms_barely_moved,
-        freedoms_fixed,
-        freedoms_moved,
-    )
+def rounding_decides(dh: DHChain, task: Task) -> bool:
+    """Whether the arm moves some freedoms of the task only barely, and the others by more joints than they
+    need: joints that were held would decide the former, and no path that moves them could be followed."""
+    from ikgen.tasks.fitting import freedoms_barely_moved, freedoms_fixed, freedoms_moved
 
-    if request.named_task is None:
-        return
-    task, whole = find_task(request.named_task, request.tool_axis), replace(dh, free=())
+    whole = replace(dh, free=())
     moved, fixed = freedoms_moved(whole, task), freedoms_fixed(whole, task)
-    if moved >= min(fixed, whole.dof) or not freedoms_barely_moved(dh, task):
+    return moved < min(fixed, whole.dof) and bool(freedoms_barely_moved(whole, task))
+
+
+def check_task(request: Request, reading: Reading, task: Task) -> None:
+    """Raises `UnsolvedChainError` for a task, asked for or chosen, of which rounding decides freedoms."""
+    from ikgen.tasks.fitting import fitting_tasks, freedoms_fixed, freedoms_moved
+
+    dh = reading.dh
+    if not rounding_decides(dh, task):
         return
+    whole = replace(dh, free=())
     able = next((t for t in fitting_tasks(whole, request.tool_axis) if not t.whole_pose), None)
-    other = replace(request, task=able.name if able else "TASK", free={}).command()
+    if able is not None:
+        other = replace(request, task=able.name, free={})
+    else:
+        other = replace(request, free={}, lock={**request.lock, **_spare(request, reading, task)})
+    moved, fixed = freedoms_moved(whole, task), freedoms_fixed(whole, task)
     raise UnsolvedChainError(
         f"no closed form found for the task '{task.name}': the joints move {moved} of the {fixed} "
         "freedoms that the task fixes, and the others by no more than rounding tilts their axes",
-        hint=other if able else f"{other}: `ikgen inspect` lists those that fit",
+        hint=other.command(),
     )
+
+
+def _spare(request: Request, reading: Reading, task: Task) -> dict[str, float]:
+    """The joints that are held, and those that would be, with the values (rad or m) they would have."""
+    from ikgen.derivation.held_joints import held_choices
+    from ikgen.kinematics.free_joints import free_defaults
+
+    choices = held_choices(reading, task)
+    dh = choices[0].dh if choices else reading.dh
+    names = (*request.free, *(choices[0].held if choices else ()))
+    values = zip(dh.held, free_defaults(dh, request.free.items()), strict=True)
+    return {name: value for name, value in values if name in names}
 
 
 def check_tool_axis(request: Request, dh: DHChain) -> None:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from ikgen.derivation.advice import attempts
-from ikgen.derivation.held_needs import check_task
+from ikgen.derivation.held_needs import check_task, rounding_decides
 from ikgen.derivation.idle_solved import idle_warning
 from ikgen.derivation.lost_freedom import lost_freedom
 from ikgen.derivation.progress import Progress, silent
@@ -111,9 +111,18 @@ def inspect_robot(
     if advice and reading:
         try:
             check_couplings(reading.dh)
-            check_task(request, reading.dh)
-            tried = attempts(reading, request.named_task, progress, request.tool_axis)
+            tried = _attempts(request, reading, progress)
         except UnsolvedChainError as error:
             hindrance = error
     found = Inspection(reading, None, tree, candidates, tuple(tried), hindrance, ends)
     return replace(found, geometry=classify(found.dh) if found.dh else None)
+
+
+def _attempts(request: Request, reading: Reading, progress: Progress) -> list[Attempt]:
+    """The attempts whose task `check_task` lets pass; its error where it refuses the task that is asked
+    for, or the one that would be taken."""
+    if request.named_task is not None:
+        check_task(request, reading, find_task(request.named_task))
+    tried = attempts(reading, request.named_task, progress, request.tool_axis)
+    check_task(request, reading, find_task(tried[0].task))
+    return [one for one in tried if not rounding_decides(reading.dh, find_task(one.task))]

@@ -107,15 +107,18 @@ def _most_attempts(dh: DHChain) -> int:
 
 def _choices(unsolved: Unsolved) -> Iterator[tuple[Task, HeldChoice | None]]:
     """The choices of joints to hold that were not tried for the task, then smaller tasks, with as many
-    joints held as move in vain (None: none)."""
+    joints held as move in vain (None: none), without those that are refused when asked for."""
     from ikgen.derivation.closed_forms import rule_tries
     from ikgen.derivation.held_joints import held_choices
+    from ikgen.derivation.held_needs import rounding_decides
     from ikgen.tasks import smaller_tasks
 
     reading, task = unsolved.reading, unsolved.task
     for choice in held_choices(reading, task)[rule_tries(reading.dh) :]:
         yield task, choice
     for one in smaller_tasks(task.freedoms):
+        if rounding_decides(reading.dh, one):
+            continue
         choices = held_choices(reading, one)
         if not choices:
             yield one, None
