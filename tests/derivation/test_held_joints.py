@@ -100,6 +100,31 @@ def test_every_choice_leaves_the_task_to_do(tmp_path: Path) -> None:
     assert keys == sorted(keys) and keys[0] == 0
 
 
+SNAKE_WRIST: tuple[Joint, ...] = (
+    ("yaw", "revolute", "0 0 1", "0 0 0", (-1.5, 1.5)),
+    ("pitch", "revolute", "0 1 0", "0 0 0", (-0.9, 0.9)),
+    ("insertion", "prismatic", "1 0 0", "0 0 0", (0.05, 0.24)),
+    ("roll", "revolute", "1 0 0", "0.1 0 0", (-2.2, 2.2)),
+    ("near_pitch", "revolute", "0 1 0", "0 0 0", (-1.5, 1.5)),
+    ("near_yaw", "revolute", "0 0 1", "0.0034 0 0", (-1.4, 1.4)),
+    ("far_yaw", "revolute", "0 0 1", "0.0034 0 0", (-1.4, 1.4)),
+    ("far_pitch", "revolute", "0 1 0", "0.0034 0 0", (-1.4, 1.4)),
+)
+"""An instrument whose insertion moves the tip far, and its wrist hardly."""
+
+
+def test_a_simple_class_is_no_reason_to_hold_what_moves_the_tip_far(tmp_path: Path) -> None:
+    request = arm(tmp_path, *SNAKE_WRIST)
+    first, *others = held_choices(read(request), POSE)
+    simple = next(choice for choice in others if choice.form < first.form)
+    assert not first.feeble and "insertion" not in first.held and "insertion" in simple.held
+    assert simple.feeble and simple.behind(first) == "worse conditioned"
+    assert not first.behind(simple)
+    derivation = derive(request)
+    assert derivation.held is not None and "insertion" not in derivation.held.joints
+    assert attempts(read(request), None, silent)[0].held == derivation.held.joints
+
+
 def test_what_puts_a_choice_behind_is_its_class_first() -> None:
     choices = held_choices(read(Request(FR3)), find_task("pose"))
     reasons = {choice.words: choice.behind(choices[0]) for choice in choices[1:]}

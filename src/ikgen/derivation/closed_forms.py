@@ -214,21 +214,21 @@ def rule_tries(dh: DHChain) -> int:
     return max(1, min(RULE_TRIES, RULE_TRIES * _FULL_TRIES_JOINTS**3 // dh.dof**3))
 
 
-def preference(choice: HeldChoice, form: ClosedForm) -> tuple[int, bool, bool, bool]:
+def preference(choice: HeldChoice, form: ClosedForm) -> tuple[int, bool, bool, bool, bool]:
     """What comes first of forms in the order of their choices: those that hold most joints which hardly
-    move; of these sound ones, then those with a weak step; of either those with two branches a step where
-    the class lets expect them."""
+    move; of these sound ones, then those with a weak step; of either those that are not feeble, and of
+    these those with two branches a step where the class lets expect them."""
     from ikgen.kinematics.form_class import is_two_branch
 
     as_expected = is_two_branch(choice.form) and form.two_branch
-    return -len(choice.idle), not form.sound, not form.closed, not as_expected
+    return -len(choice.idle), not form.sound, not form.closed, choice.feeble, not as_expected
 
 
-def _hoped(choice: HeldChoice) -> tuple[int, bool, bool, bool]:
+def _hoped(choice: HeldChoice) -> tuple[int, bool, bool, bool, bool]:
     """The best preference that a form of a choice can have."""
     from ikgen.kinematics.form_class import is_two_branch
 
-    return -len(choice.idle), False, False, not is_two_branch(choice.form)
+    return -len(choice.idle), False, False, choice.feeble, not is_two_branch(choice.form)
 
 
 def _explained(

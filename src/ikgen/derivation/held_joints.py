@@ -39,6 +39,10 @@ _POOR = 0.3
 """Choices of a class that are conditioned worse than its best by this factor, or whose joints reach as much
 less, as a wrist does that moves the tool alone, come last in it."""
 
+_FEEBLE = 0.05
+"""Choices that are conditioned worse than the best of all classes by this factor come after all others: of
+a slide and a wrist that are held together few poses are left, however simple their closed form."""
+
 _LOOKED_AT = 128
 """Configurations at which the conditioning is looked at; fewer of them where there are many choices."""
 
@@ -59,7 +63,8 @@ class HeldChoice:
     configurations inside the limits, half of them with the held joints at their defaults: one that is
     near a singularity more often has less. `volume` is the mean of the product of all singular values,
     of how much of the task's space small motions fill. `poor`: whether it has far less of either than the
-    best of its class. `idle` are those of `held` that hardly move.
+    best of its class; `feeble`: whether it is conditioned far worse than the best of all classes. `idle`
+    are those of `held` that hardly move.
     """
 
     held: tuple[str, ...]
@@ -70,6 +75,7 @@ class HeldChoice:
     volume: float
     near: bool = False
     poor: bool = False
+    feeble: bool = False
     idle: tuple[str, ...] = ()
 
     @property
@@ -97,6 +103,8 @@ class HeldChoice:
         if len(self.idle) != len(taken.idle):
             solved = [name for name in taken.idle if name not in self.idle]
             return f"solves for {' and '.join(solved)}" if len(self.idle) < len(taken.idle) else ""
+        if self.feeble != taken.feeble:
+            return "worse conditioned" if self.feeble else ""
         if (self.form, self.near) != (taken.form, taken.near):
             later = (self.form, self.near) > (taken.form, taken.near)
             return self.class_words if later else ""
@@ -156,7 +164,9 @@ def held_choices(reading: Reading, task: Task) -> tuple[HeldChoice, ...]:
 def _sorted(choices: Sequence[HeldChoice]) -> list[HeldChoice]:
     """Best first."""
     best: dict[tuple[int, int], tuple[float, float]] = {}
+    top: dict[int, float] = {}
     for one in choices:
+        top[len(one.idle)] = max(one.condition, top.get(len(one.idle), 0.0))
         condition, volume = best.get(_class(one), (0.0, 0.0))
         best[_class(one)] = max(one.condition, condition), max(one.volume, volume)
 
@@ -164,12 +174,15 @@ def _sorted(choices: Sequence[HeldChoice]) -> list[HeldChoice]:
         condition, volume = best[_class(one)]
         return one.condition < _POOR * condition or one.volume < _POOR * volume
 
-    found = [replace(one, poor=poor(one)) for one in choices]
+    def feeble(one: HeldChoice) -> bool:
+        return one.condition < _FEEBLE * top[len(one.idle)]
 
-    def group(one: HeldChoice) -> tuple[tuple[int, int], bool, bool]:
-        return _class(one), one.near, one.poor
+    found = [replace(one, poor=poor(one), feeble=feeble(one)) for one in choices]
 
-    widest: dict[tuple[tuple[int, int], bool, bool], float] = {}
+    def group(one: HeldChoice) -> tuple[int, bool, int, bool, bool]:
+        return -len(one.idle), one.feeble, one.form, one.near, one.poor
+
+    widest: dict[tuple[int, bool, int, bool, bool], float] = {}
     for one in found:
         widest[group(one)] = max(one.span, widest.get(group(one), 0.0))
 
