@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import ast
+import contextlib
 import importlib.util
+import io
 import json
 import pkgutil
 import re
-import subprocess
 import sys
 from pathlib import Path
 from types import ModuleType
@@ -27,6 +28,8 @@ if sys.version_info >= (3, 11):
     import tomllib
 else:
     import tomli as tomllib
+
+pytestmark = pytest.mark.usefixtures("solved_once")
 
 ROOT = Path(__file__).resolve().parents[2]
 REFERENCE = ROOT / "docs/reference"
@@ -147,8 +150,11 @@ def fields(value: Any) -> set[str]:
 
 
 def output(*arguments: str) -> Any:
-    command = [sys.executable, "-m", "ikgen", *arguments, "--json"]
-    return json.loads(subprocess.run(command, capture_output=True, text=True).stdout)
+    """What a command prints, whatever its exit code."""
+    said = io.StringIO()
+    with contextlib.redirect_stdout(said):
+        run([*arguments, "--json"])
+    return json.loads(said.getvalue())
 
 
 def test_json_fields_are_listed(tmp_path: Path) -> None:
