@@ -13,6 +13,8 @@ from ikgen.chains.other_ends import other_ends
 from ikgen.cli.main import run
 from ikgen.importers.urdf.urdf_tree import parse_urdf
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 PALM = {"thumb": 4, "index": 2, "ring": 2}
 
 

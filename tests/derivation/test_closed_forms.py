@@ -18,6 +18,8 @@ from ikgen.derivation.inspection import inspect_robot
 from ikgen.errors import IkgenError
 from ikgen.records.request import Request
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 
 @pytest.mark.parametrize(("beside", "quartic"), [(3e-5, False), (3e-4, True)])
 def test_a_quartic_of_lengths_that_it_divides_by_is_none_of_rounding(

@@ -30,6 +30,8 @@ from ikgen.records.request import Request
 from ikgen.tasks import find_task
 from ikgen.tasks.fitting import freedoms_barely_moved, freedoms_fixed
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 TABLES = Path(__file__).resolve().parents[1] / "robots/tables"
 
 

@@ -18,6 +18,8 @@ from ikgen.generation.generate import generate
 from ikgen.records.request import Outputs, Request
 from ikgen.verify.verification_report import CheckResult, VerificationReport
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 REQUEST = Request(FIXTURES / "puma560_paper.toml")
 
 

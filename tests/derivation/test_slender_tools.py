@@ -14,6 +14,8 @@ from ikgen.emit.cpp.cpp_emitter import emit_header
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.records.request import Request
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 _SLENDER = (
     ("0 0 0.1", "0 0 0"),
     ("0.03 0 0", "1.5707963267948966 0 0"),

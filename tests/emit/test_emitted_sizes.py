@@ -11,6 +11,8 @@ from ikgen.emit.cpp.cpp_emitter import emit_header
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.records.request import Request
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 FIXTURES = Path(__file__).parents[2] / "urdf_fixtures"
 MOST = {  # bytes of the module and of the header, 2 % above what they were
     "abb_irb2400": (168_000, 163_000),

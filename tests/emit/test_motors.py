@@ -27,6 +27,8 @@ from ikgen.records.request import Request
 from ikgen.verify.runners.python_module import PythonModule
 from ikgen.verify.verification import verify
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 Array = NDArray[np.float64]
 Sources = dict[str, tuple[dict[str, float], float]]
 

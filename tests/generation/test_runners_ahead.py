@@ -21,6 +21,8 @@ from ikgen.generation.generate import generate, make_texts
 from ikgen.generation.runners_ahead import RunnersAhead
 from ikgen.records.request import Outputs, Request
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 
 class Fake:
     """A runner that notes what happens to it."""

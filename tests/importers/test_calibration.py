@@ -25,6 +25,8 @@ if sys.version_info >= (3, 11):
 else:
     import tomli as tomllib
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 FIXTURES = Path(__file__).resolve().parents[2] / "urdf_fixtures"
 UR5E = Request(FIXTURES / "ur5e.urdf", base="base_link", tip="tool0")
 OWN = """

@@ -16,6 +16,8 @@ from ikgen.errors import MissingToolError, UnknownNameError
 from ikgen.importers import load_tree, taken_arguments
 from ikgen.importers.named_robots import find_robot, is_named, robot_names
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 ELBOW = Path(__file__).resolve().parents[2] / "examples/setuptools_robot/urdf/elbow.urdf"
 FILES = {
     "elbow_description/urdf/elbow_robot.urdf": "elbow",

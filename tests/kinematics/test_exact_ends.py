@@ -18,6 +18,8 @@ from ikgen.kinematics.forward import dh_forward, file_forward
 from ikgen.kinematics.modified_dh import to_dh
 from ikgen.records.request import Outputs, Request
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 _TURN = (-2.9, 2.9)
 FIVE: tuple[Joint, ...] = (
     ("pan", "revolute", "0 0 1", "0 0 0.1", _TURN),

@@ -9,10 +9,11 @@ import pytest
 from tests.support.solving import FIXTURES
 from tests.support.tables import table
 
-from ikgen.derivation.derive import derive
 from ikgen.generation.generate import generate
 from ikgen.kinematics.position_unit import position_unit
 from ikgen.records.request import Outputs, Request
+
+pytestmark = pytest.mark.usefixtures("solved_once")
 
 
 def test_it_is_the_longest_link_and_a_metre_for_small_arms() -> None:
@@ -39,7 +40,7 @@ def test_an_arm_in_the_size_of_a_watch_is_verified(tmp_path: Path) -> None:
     path.write_text(re.sub(r'(<origin [^>]*)xyz="([^"]*)"', smaller, text), "utf-8")
     made = generate(Request(path), Outputs(out=tmp_path, samples=20))
     assert made.reports["python"].passed
-    assert derive(Request(path)).module.size < 0.05
+    assert made.derivation.module.size < 0.05
 
 
 def test_frames_far_out_along_axes_do_not_count() -> None:

@@ -18,6 +18,8 @@ from tests.support.sampled import sampled
 import ikgen
 from ikgen.errors import ArgumentError, IkgenError, UnknownNameError
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 ROOT = Path(__file__).resolve().parents[2]
 FIXTURES = ROOT / "urdf_fixtures"
 ELBOW = ROOT / "examples/setuptools_robot/urdf/elbow.urdf"

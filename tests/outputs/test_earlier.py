@@ -10,6 +10,8 @@ from tests.support.small_robots import write_robot
 
 from ikgen.cli.main import run
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 QUICK = ("--no-verify", "-q", "--task", "position", "-o", "out")
 
 

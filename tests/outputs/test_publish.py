@@ -17,6 +17,8 @@ from ikgen.outputs.journal import interrupted
 from ikgen.outputs.publish import check_folder, publish
 from ikgen.processes.scratch_folder import ScratchFolder
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 HOUR = 3600.0
 
 

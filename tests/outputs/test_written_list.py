@@ -12,6 +12,8 @@ from ikgen.cli.main import run
 from ikgen.errors import UsageError
 from ikgen.outputs.written_list import digests_listed, publish_listed
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 REPORT = ["report", "elbow.urdf", "--task", "position", "--no-verify", "-q", "-o", "out"]
 
 

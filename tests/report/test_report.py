@@ -25,6 +25,8 @@ from ikgen.report.layout import layout
 from ikgen.report.solution_sets import versions_of
 from ikgen.verify.verification_report import CheckResult, VerificationReport
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 ROOT = Path(__file__).resolve().parents[2]
 TABLES = {
     "puma": ROOT / "urdf_fixtures" / "puma560_paper.toml",
