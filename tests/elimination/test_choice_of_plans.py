@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from tests.elimination.test_elimination import arm_frames, configurations, missing
+from tests.elimination.test_elimination import arm_frames, configurations, dh_frames, missing
 
 from ikgen.elimination.elimination_table import finder
 from ikgen.elimination.loop_frames import forward, hold_joint, typical_length
 from ikgen.elimination.plan import _separate, choose_plan, digits_lost, ranking
 from ikgen.elimination.resultant import root_shifts
-from ikgen.elimination.routine import Plan, initial_residuals
+from ikgen.elimination.routine import Plan, first_runs
 from ikgen.runtime.python.elimination.general_6r import candidates
 
 Array = NDArray[np.float64]
@@ -24,8 +24,9 @@ def test_half_a_tenth_of_a_digit_of_noise_changes_no_order(seed: int) -> None:
     rough = np.array([3.0, 1.3, 1.28, 0.4, 1.5, 0.35, 0.3]) + noise
     hits = np.ones((7, 200), dtype=bool)
     hits[6, :20] = False
-    assert ranking(hits, rough)[:2] == [3, 5]
-    assert ranking(hits[:5], rough[:5]) == [3, 1]
+    enough = np.ones(7)
+    assert ranking(hits, rough, enough)[:2] == [3, 5]
+    assert ranking(hits[:5], rough[:5], enough[:5]) == [3, 1]
     noise *= 4.0
     shifts = 10.0 ** np.array([-1.0, -9.6, -6.0, -9.9, -9.8, -1.2]) * 10.0 ** noise[:6]
     assert _separate(shifts) == [1, 3]
@@ -33,8 +34,31 @@ def test_half_a_tenth_of_a_digit_of_noise_changes_no_order(seed: int) -> None:
 
 def test_of_two_slides_the_second_hidden_angle_is_not_opposite_to_the_first() -> None:
     hits, rough = np.ones((4, 9), dtype=bool), np.array([2.0, 0.0, 0.9, 0.01])
-    assert ranking(hits, rough) == [1, 3]
-    assert ranking(hits, rough, opposite=2) == [1, 2]
+    assert ranking(hits, rough, np.ones(4)) == [1, 3]
+    assert ranking(hits, rough, np.ones(4), opposite=2) == [1, 2]
+
+
+def test_what_is_enough_more_often_comes_before_what_loses_a_digit_less() -> None:
+    hits, rough = np.ones((4, 24), dtype=bool), np.array([1.5, 1.0, 2.5, 2.4])
+    enough = np.array([9.0, 8.0, 22.0, 23.0]) / 24.0
+    assert ranking(hits, rough, enough) == [2, 3]
+    hits[2:, 0] = False
+    assert ranking(hits, rough, enough)[0] == 1
+
+
+def test_roots_that_lie_in_pairs_are_left_to_another_hidden_angle() -> None:
+    """A wrist whose axes miss each other by a hundredth of the arm: its two solutions for each position
+    share the angles of the first three joints, nearly."""
+    h = 0.5 * np.pi
+    a, d = [0.0, 0.1, 0.4, 0.02, 0.004, 0.0], [0.0, 0.0, 0.1, 0.4, 0.005, 0.0]
+    frames = dh_frames([0.0, -h, 0.0, h, -h, h], a, d)
+    plan = choose_plan(frames)
+    q = configurations(frames, 24)
+    poses = np.array([forward(frames, row) for row in q])
+    find = finder(plan.turning)
+    alone = [Plan(plan.length, (e,), plan.turning, find) for e in (plan.eliminations[0], (2, 0, 0))]
+    chosen, paired = (run.enough.mean() for run in first_runs(frames, alone, poses))
+    assert chosen > 0.8 > 0.6 > paired
 
 
 def test_only_what_separates_roots_is_kept() -> None:
@@ -96,7 +120,7 @@ def test_a_held_joint_that_makes_axes_parallel_leaves_the_first_elimination_its_
         q = configurations(held, 20)
         poses = np.array([forward(held, row) for row in q])
         alone = Plan(plan.length, plan.eliminations[:1], plan.turning, finder(plan.turning))
-        assert missing(initial_residuals(held, [alone], poses)[0][0], q) == 0
+        assert missing(first_runs(held, [alone], poses)[0].rows, q) == 0
         said = [candidates(held[:, None], poses, e, plan.turning)[2] for e in plan.eliminations]
         assert np.min(said) >= 0
         assert (candidates(held[:, None], poses, elsewhere, plan.turning)[2] == -1).all()

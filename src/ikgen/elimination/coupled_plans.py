@@ -25,7 +25,7 @@ from ikgen.elimination.plan import (
     half_hard,
     ranking,
 )
-from ikgen.elimination.routine import Elimination, Plan, initial_residuals
+from ikgen.elimination.routine import Elimination, Plan, first_runs
 from ikgen.kinematics.rigid import read_only
 from ikgen.model.arrays import Array
 from ikgen.runtime.python.arm.chain_kinematics import Chain, Motion, chain_of, forward, jacobian
@@ -62,7 +62,8 @@ def choose_coupled(frames: Array, motions: tuple[Motion, ...]) -> EliminationPla
         plans = [Plan(length, (e,), _ALL_TURN, find, motions=motions) for e in group]
         parts = [_probe(*known, plans) for known in zip(family, chains, probes, strict=True)]
         hits = np.concatenate([part[0] for part in parts], axis=1)
-        order = ranking(hits, np.max([part[1] for part in parts], axis=0))
+        rough, enough = (np.array([part[k] for part in parts]) for k in (1, 2))
+        order = ranking(hits, rough.max(axis=0), enough.mean(axis=0))
         recall = float(hits[order[0]].mean()) if hits.size else 0.0
         if best is None or recall > best.recall:
             chosen = tuple(group[k] for k in order)
@@ -74,16 +75,17 @@ def choose_coupled(frames: Array, motions: tuple[Motion, ...]) -> EliminationPla
     return best
 
 
-def _probe(frames: Array, chain: Chain, q: Array, plans: list[Plan]) -> tuple[Array, Array]:
-    """Which plan finds which solution of the poses of configurations q (n, 6), and the digits that each
-    loses; the chain is the frames' in lengths over the plans'."""
+def _probe(frames: Array, chain: Chain, q: Array, plans: list[Plan]) -> tuple[Array, Array, Array]:
+    """Which plan finds which solution of the poses of configurations q (n, 6), the digits that each
+    loses, and at what share of them it is enough; the chain is the frames' in lengths over the plans'."""
     poses = forward(chain, q)
     poses[:, :3, 3] *= plans[0].length
-    runs = initial_residuals(frames, plans, poses)
-    rough = np.array([digits_lost(errors) for _, errors in runs])
-    every = [[*(rows[i] for rows, _ in runs), row[None]] for i, row in enumerate(q)]
+    runs = first_runs(frames, plans, poses)
+    rough = np.array([digits_lost(run.before) for run in runs])
+    enough = np.array([run.enough.mean() for run in runs])
+    every = [[*(run.rows[i] for run in runs), row[None]] for i, row in enumerate(q)]
     hits = [distinct_of_runs(rows, _ALL_TURN)[:-1] for rows in every]
-    return np.concatenate([np.zeros((len(plans), 0), dtype=bool), *hits], axis=1), rough
+    return np.concatenate([np.zeros((len(plans), 0), dtype=bool), *hits], axis=1), rough, enough
 
 
 _Crowded = tuple[tuple[float, int], ...]

@@ -25,7 +25,7 @@ from ikgen.elimination.elimination_table import (
 from ikgen.elimination.loop_frames import forward, jacobian, over, typical_length
 from ikgen.elimination.parallel_plans import ParallelPlan, choose_parallel
 from ikgen.elimination.resultant import RESULTANTS, Resultant, root_shifts
-from ikgen.elimination.routine import Elimination, Plan, Turning, initial_residuals
+from ikgen.elimination.routine import Elimination, Plan, Turning, first_runs
 from ikgen.kinematics.rigid import read_only
 from ikgen.model.arrays import Array
 from ikgen.runtime.python.arm.chain_kinematics import Motion
@@ -50,6 +50,7 @@ _BLURRED = 1.5e-2  # rad; roots that move further are not worth a resultant
 _SAME = 1e-5
 _FINE = -8.0  # logarithm of errors below which they no longer count
 _ALIKE = 0.3  # digits lost on average, which rounding moves by less than a tenth
+_AS_OFTEN = 0.05  # of poses: one of two dozen
 _KEPT = 2
 _SPECIAL_PROBES = 3
 
@@ -171,7 +172,8 @@ def _chosen(
 
     plain = _joined([probed(member, each) for member in family])
     every = _joined([plain, *(probed(member, _SPECIAL_PROBES) for member in special)])
-    order = ranking(every.hits, every.rough, opposite=2 if turning.count(False) == 2 else 0)
+    opposite = 2 if turning.count(False) == 2 else 0
+    order = ranking(every.hits, every.rough, plain.enough, opposite=opposite)
     everywhere, elsewhere = _separate(every.shifts), _separate(plain.shifts)
     separate = dict.fromkeys([*everywhere, *elsewhere])
     first = read_only(family[0])
@@ -188,10 +190,11 @@ def _chosen(
     )
 
 
-def ranking(hits: Array, rough: Array, opposite: int = 0) -> list[int]:
-    """The eliminations to keep: most solutions together with those before, then the first of the best
-    conditioned. One that loses a digit counts as if it had lost one solution in a hundred. Of two that are
-    `opposite` places apart (0: none are) one is kept, as the other is no better where it fails."""
+def ranking(hits: Array, rough: Array, enough: Array, opposite: int = 0) -> list[int]:
+    """The eliminations to keep: most solutions together with those before, then those that are `enough` by
+    themselves most often, then the first of the best conditioned. One that loses a digit counts as if it
+    had lost one solution in a hundred. Of two that are `opposite` places apart (0: none are) one is kept,
+    as the other is no better where it fails."""
     order: list[int] = []
     covered = np.zeros(hits.shape[1], dtype=bool)
     for _ in range(min(_KEPT, len(hits))):
@@ -199,7 +202,10 @@ def ranking(hits: Array, rough: Array, opposite: int = 0) -> list[int]:
         found = {k: int((covered | hits[k]).sum()) for k in rest}
         best = max(rest, key=lambda k: found[k] - 0.01 * rough[k] * hits.shape[1])
         as_many = [k for k in rest if found[k] >= found[best]]
-        order.append(next(k for k in as_many if rough[k] < rough[best] + _ALIKE))
+        most = max(enough[k] for k in as_many) - _AS_OFTEN
+        quick = [k for k in as_many if enough[k] >= most]
+        least = min(rough[k] for k in quick)
+        order.append(next(k for k in quick if rough[k] < least + _ALIKE))
         covered |= hits[order[-1]]
     return order
 
@@ -217,21 +223,22 @@ def _separate(shifts: Array) -> list[int]:
 @dataclass(frozen=True, slots=True)
 class _Probe:
     """hits (n_e, n) bool: which elimination finds which solution. rough (n_e,): how many digits more than
-    need be its candidates' errors have, on average. shifts (n_r,) in rad: how far rounding moves the
-    roots of the resultants."""
+    need be its candidates' errors have, on average. enough (n_e,): at what share of poses no other run has
+    to follow. shifts (n_r,) in rad: how far rounding moves the roots of the resultants."""
 
     hits: Array
     rough: Array
+    enough: Array
     shifts: Array
 
 
 def _joined(parts: Sequence[_Probe]) -> _Probe:
-    """All solutions, and the worst of the rest."""
+    """All solutions, the worst of the rest, and how often one is enough on average."""
     hits = np.concatenate([part.hits for part in parts], axis=1)
     rough, shifts = (
         np.max([getattr(p, name) for p in parts], axis=0) for name in ("rough", "shifts")
     )
-    return _Probe(hits, rough, shifts)
+    return _Probe(hits, rough, np.mean([p.enough for p in parts], axis=0), shifts)
 
 
 def _probe(frames: Array, every: Sequence[Plan], count: int, rng: np.random.Generator) -> _Probe:
@@ -239,16 +246,18 @@ def _probe(frames: Array, every: Sequence[Plan], count: int, rng: np.random.Gene
     q = _configurations(frames, turning, count, rng)
     if not len(q):  # singular everywhere: two axes on one line, or four that keep parallel
         hits = np.zeros((len(every), 0), dtype=bool)
-        return _Probe(hits, np.zeros(len(every)), np.ones(len(RESULTANTS)))
+        none = np.zeros(len(every))
+        return _Probe(hits, none, none, np.ones(len(RESULTANTS)))
     poses = forward(frames, q, turning)
-    runs = initial_residuals(frames, every, poses)
-    rough = np.array([digits_lost(errors) for _, errors in runs])
-    unions = [distinct_of_runs([rows[i] for rows, _ in runs], turning) for i in range(len(poses))]
+    runs = first_runs(frames, every, poses)
+    rough = np.array([digits_lost(run.before) for run in runs])
+    enough = np.array([run.enough.mean() for run in runs])
+    unions = [distinct_of_runs([run.rows[i] for run in runs], turning) for i in range(len(poses))]
     shifts = np.ones((len(RESULTANTS), 1))
     if all(turning):
         shifts = root_shifts(over(frames, length), over(poses, length), q)
     hits = np.concatenate(unions, axis=1)
-    return _Probe(hits, rough, np.quantile(shifts, 0.75, axis=1))
+    return _Probe(hits, rough, enough, np.quantile(shifts, 0.75, axis=1))
 
 
 def digits_lost(errors: Array) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import fields
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +13,9 @@ from ikgen.elimination.loop_frames import over
 from ikgen.model.arrays import Array
 from ikgen.program.policy import SolvePolicy
 from ikgen.runtime.python.arm.solve_policy import Policy
+from ikgen.runtime.python.arrays.array_types import Flags
 from ikgen.runtime.python.elimination.general_6r import (
+    DIRECT,
     Elimination,
     Plan,
     refined_rows,
@@ -23,9 +26,10 @@ from ikgen.runtime.python.rows.solution_rows import Turning, distinct_rows
 
 __all__ = [
     "Elimination",
+    "FirstRun",
     "Plan",
     "Turning",
-    "initial_residuals",
+    "first_runs",
     "runtime_policy",
     "six_joints_batch",
 ]
@@ -53,23 +57,37 @@ def _by_pose(rows: Array, pose: NDArray[np.intp], count: int) -> list[Array]:
     return np.split(rows, np.searchsorted(pose, np.arange(1, count))) if count else []
 
 
-def initial_residuals(
-    frames: Array, plans: Sequence[Plan], poses: Array
-) -> list[tuple[list[Array], Array]]:
-    """The first elimination's solutions by each plan for poses (N, 4, 4), lengths over the plan's, and the
-    pose errors (m,) of those candidates that became solutions, before Newton's method: how well conditioned
-    the elimination is. The plans are of one arm: all their candidates are refined together."""
+class FirstRun(NamedTuple):
+    """What an elimination finds alone: the `rows` (k, 6) of each of N poses, the pose errors (m,) of the
+    candidates that became them, `before` Newton's method, which say how well conditioned it is, and for
+    which poses (N,) that is `enough`, so that no other run follows."""
+
+    rows: list[Array]
+    before: Array
+    enough: Flags
+
+
+def first_runs(frames: Array, plans: Sequence[Plan], poses: Array) -> list[FirstRun]:
+    """The first elimination of each plan at poses (N, 4, 4), lengths over the plan's. The plans are of one
+    arm: all their candidates are refined together."""
     policy, plan = runtime_policy(SolvePolicy()), plans[0]
     six, T = six_joints(frames, plan.length, plan.axes), over(poses, plan.length)
-    found = [one.find(six.frames, T, one.eliminations[0], one.turning)[:2] for one in plans]
-    ends = np.cumsum([len(index) for index, _ in found])[:-1]
-    index, q = map(np.concatenate, zip(*found, strict=True))
+    found = [one.find(six.frames, T, one.eliminations[0], one.turning) for one in plans]
+    index, q = (np.concatenate([one[k] for one in found]) for k in (0, 1))
     if not len(q):
-        return [([np.zeros((0, 6)) for _ in poses], np.zeros(0)) for _ in plans]
-    refined = refined_rows(six, plan, index, T[index], q, policy)
-    out = []
-    for pose, *part in zip(*(np.split(x, ends) for x in (index, *refined)), strict=True):
-        good = part[1] < policy.arrived
-        rows, pose, _ = distinct_rows(part[0][good], pose[good], plan.turning, policy.coincident)
-        out.append((_by_pose(rows, pose, len(poses)), part[2][good]))
+        none = np.zeros(len(poses), dtype=bool)
+        return [FirstRun([np.zeros((0, 6)) for _ in poses], np.zeros(0), none) for _ in plans]
+    rows, error, before = refined_rows(six, plan, index, T[index], q, policy)
+    out, end = [], 0
+    for of, _, real, clear in found:
+        start, end = end, end + len(of)
+        good = start + np.flatnonzero(error[start:end] < policy.arrived)
+        good = good[np.lexsort((before[good] >= DIRECT, index[good]))]
+        distinct, pose, kept = distinct_rows(
+            rows[good], index[good], plan.turning, policy.coincident
+        )
+        count = np.bincount(pose, minlength=len(poses))
+        direct = np.bincount(pose[before[good[kept]] < DIRECT], minlength=len(poses))
+        enough = clear & (direct == real) & (count == direct) & (count > 0) & (count % 2 == 0)
+        out.append(FirstRun(_by_pose(distinct, pose, len(poses)), before[good], enough))
     return out

@@ -32,6 +32,7 @@ from ikgen.runtime.python.rows.solution_rows import (
 )
 
 __all__ = [
+    "DIRECT",
     "Candidates",
     "Elimination",
     "Finder",
@@ -50,7 +51,7 @@ Finder = Callable[[Sequence[Array], Array, Elimination, Turning], Candidates]
 Way = tuple[Finder, Elimination, float]  # the last: how far off the pose exact candidates may be
 _SIX = range(6)
 # Error of a candidate from a root that is exact: a double one is off by the square root.
-_DIRECT = 1e-7
+DIRECT = 1e-7
 # Error of one that stalls where more than two solutions meet: steps get no closer there in reasonable time.
 _STALLED = 1e-6
 # Smallest singular value where solutions meet: rows keep few digits there, and so close together are one.
@@ -153,7 +154,7 @@ _ASIDE, _FARTHER, _CLOSE = _displaced(1e-3), _displaced(0.03), (_displaced(1e-6)
 
 def _runs(plan: Plan) -> list[tuple[Way, tuple[Array | None, ...]]]:
     """One after the other what is tried, and the motions of the tool to the poses that it is tried at."""
-    ways = [(plan.find, one, _DIRECT) for one in plan.eliminations]
+    ways = [(plan.find, one, DIRECT) for one in plan.eliminations]
     runs: list[tuple[Way, tuple[Array | None, ...]]] = [(way, (None,)) for way in plan.direct]
     runs += [(ways[0], (None,)), (ways[0], _ASIDE)]
     runs += [(way, (None, *_ASIDE)) for way in ways[1:]]
