@@ -453,21 +453,22 @@ template <class X> inline void cross(const X* a, const X* b, X* out) noexcept {
   out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-template <class X, int N> inline void factor(X (&A)[N][N], double least = 1e-300) noexcept {
+template <int I, class X, int N> [[gnu::always_inline]] inline void factor_rows(X (&A)[N][N], double least) noexcept {
   using std::max;
-  for (int i = 0; i < N; ++i) {
-    X rest = A[i][i], row[N];
-    for (int j = 0; j < i; ++j) {
-      row[j] = A[i][j];
-      for (int k = 0; k < j; ++k) row[j] = row[j] - A[j][k] * row[k];
-    }
-    for (int j = 0; j < i; ++j) {
-      A[i][j] = row[j] * A[j][j];
-      rest = rest - A[i][j] * row[j];
-    }
-    A[i][i] = 1.0 / max(rest, least);
+  X rest = A[I][I], row[N];
+  for (int j = 0; j < I; ++j) {
+    row[j] = A[I][j];
+    for (int k = 0; k < j; ++k) row[j] = row[j] - A[j][k] * row[k];
   }
+  for (int j = 0; j < I; ++j) {
+    A[I][j] = row[j] * A[j][j];
+    rest = rest - A[I][j] * row[j];
+  }
+  A[I][I] = 1.0 / max(rest, least);
+  if constexpr (I + 1 < N) factor_rows<I + 1>(A, least);
 }
+
+template <class X, int N> inline void factor(X (&A)[N][N], double least = 1e-300) noexcept { factor_rows<0>(A, least); }
 
 template <class X, int N> inline auto definite(const X (&A)[N][N]) noexcept {
   auto yes = 1e299 > A[0][0];

@@ -1,5 +1,5 @@
-// Kernels on small dense arrays of fixed size. Eigen's LLT of the same 6x6 normal equations takes 184 ns where these
-// take 168 (g++ 12 -O3; 166 and 93 with AVX-512), and the source that includes it 4 s to compile instead of 1.2.
+// Kernels on small dense arrays of fixed size. Eigen's LLT of the same 6x6 normal equations takes 285 ns where these
+// take 93 (g++ 12 -O3; 240 and 56 with AVX-512), and the source that includes it 4 s to compile instead of 1.2.
 #pragma once
 
 #include <algorithm>
@@ -14,23 +14,26 @@ template <class X> inline void cross(const X* a, const X* b, X* out) noexcept {
   out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
+// Rows I and on of the factors below. A function a row: loops over rows that grow are left rolled, and 6x6 doubles take two
+// to three times as long.
+template <int I, class X, int N> [[gnu::always_inline]] inline void factor_rows(X (&A)[N][N], double least) noexcept {
+  using std::max;
+  X rest = A[I][I], row[N];
+  for (int j = 0; j < I; ++j) {
+    row[j] = A[I][j];
+    for (int k = 0; k < j; ++k) row[j] = row[j] - A[j][k] * row[k];
+  }
+  for (int j = 0; j < I; ++j) {
+    A[I][j] = row[j] * A[j][j];
+    rest = rest - A[I][j] * row[j];
+  }
+  A[I][I] = 1.0 / max(rest, least);
+  if constexpr (I + 1 < N) factor_rows<I + 1>(A, least);
+}
+
 // The factors of A = L D L^T, symmetric and given up to its diagonal, in its place: L below the diagonal, the inverse of D
 // on it, no less than `least` taken for D. X is double, or a pack of them.
-template <class X, int N> inline void factor(X (&A)[N][N], double least = 1e-300) noexcept {
-  using std::max;
-  for (int i = 0; i < N; ++i) {
-    X rest = A[i][i], row[N];
-    for (int j = 0; j < i; ++j) {
-      row[j] = A[i][j];
-      for (int k = 0; k < j; ++k) row[j] = row[j] - A[j][k] * row[k];
-    }
-    for (int j = 0; j < i; ++j) {
-      A[i][j] = row[j] * A[j][j];
-      rest = rest - A[i][j] * row[j];
-    }
-    A[i][i] = 1.0 / max(rest, least);
-  }
-}
+template <class X, int N> inline void factor(X (&A)[N][N], double least = 1e-300) noexcept { factor_rows<0>(A, least); }
 
 // Whether the matrix was positive definite whose factors these are.
 template <class X, int N> inline auto definite(const X (&A)[N][N]) noexcept {
