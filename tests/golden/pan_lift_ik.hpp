@@ -514,8 +514,10 @@ template <int N> inline bool keeps_orientation(double (&A)[N][N]) noexcept {
       if (std::abs(A[i][k]) > std::abs(A[pivot][k])) pivot = i;
     if (pivot != k) std::swap_ranges(A[k], A[k] + N, A[pivot]);
     keeps = keeps == ((pivot == k) == (A[k][k] >= 0.0));
-    for (int i = k + 1; i < N && A[k][k] != 0.0; ++i)
-      for (int j = N - 1; j >= k; --j) A[i][j] -= A[i][k] / A[k][k] * A[k][j];
+    for (int i = k + 1; i < N && A[k][k] != 0.0; ++i) {
+      const double share = A[i][k] / A[k][k];
+      for (int j = k + 1; j < N; ++j) A[i][j] -= share * A[k][j];
+    }
   }
   return keeps;
 }
