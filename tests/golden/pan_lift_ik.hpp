@@ -282,6 +282,14 @@ template <int N, int M, bool H> [[gnu::always_inline]] inline Mask<N> spread(con
   }
 }
 
+template <class X> [[gnu::always_inline]] inline X constant(double x) noexcept {
+  if constexpr (std::is_same_v<X, double>) {
+    return x;
+  } else {
+    return spread<kWidth<X>>(x);
+  }
+}
+
 template <int N> [[gnu::always_inline]] inline Lanes<N> signs() noexcept {
   if constexpr (N > kNative) {
     return {spread<N / 2>(1.0), spread<N / 2>(-1.0)};
@@ -321,6 +329,7 @@ template <int N, bool H> [[gnu::always_inline]] inline Lanes<N> operator-(const 
   return each<Lanes<N>>([](auto x) { return -x; }, a);
 }
 
+[[gnu::always_inline]] inline double select(bool which, double a, double b) noexcept { return which ? a : b; }
 template <int M, bool H, class A, class B>
 [[gnu::always_inline]] inline auto select(const MaskOf<M, H>& m, const A& a, const B& b) noexcept {
   constexpr int K = kWidth<A> > kWidth<B> ? kWidth<A> : kWidth<B>;
@@ -591,14 +600,6 @@ template <class Arm> struct MotionChain {
 
  private:
   static constexpr auto kAll = std::make_index_sequence<static_cast<std::size_t>(kCount)>();
-
-  template <class X> [[gnu::always_inline]] static X constant(double x) noexcept {
-    if constexpr (std::is_same_v<X, double>) {
-      return x;
-    } else {
-      return spread<kWidth<X>>(x);
-    }
-  }
 
   template <class X> struct Turns {
     static constexpr bool kPack = !std::is_same_v<X, double>;

@@ -78,14 +78,6 @@ template <class Arm> struct MotionChain {
  private:
   static constexpr auto kAll = std::make_index_sequence<static_cast<std::size_t>(kCount)>();
 
-  template <class X> [[gnu::always_inline]] static X constant(double x) noexcept {
-    if constexpr (std::is_same_v<X, double>) {
-      return x;
-    } else {
-      return spread<kWidth<X>>(x);
-    }
-  }
-
   // Cosines and sines of what turns, and how far what slides moves.
   template <class X> struct Turns {
     static constexpr bool kPack = !std::is_same_v<X, double>;

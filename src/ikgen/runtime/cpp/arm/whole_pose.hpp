@@ -4,8 +4,6 @@
 
 namespace ikgen_runtime {
 
-[[gnu::always_inline]] inline double select(bool which, double a, double b) noexcept { return which ? a : b; }
-
 // The task of the whole pose: position, then rotation; of one configuration (X: double), or of those in lanes.
 template <class Arm> struct WholePose {
   static constexpr int kCount = 6;

@@ -86,6 +86,15 @@ template <int N, int M, bool H> [[gnu::always_inline]] inline Mask<N> spread(con
   }
 }
 
+// A number, or a pack that has it in every lane.
+template <class X> [[gnu::always_inline]] inline X constant(double x) noexcept {
+  if constexpr (std::is_same_v<X, double>) {
+    return x;
+  } else {
+    return spread<kWidth<X>>(x);
+  }
+}
+
 // +1 in the first half of the lanes, -1 in the second: the two branches of a level.
 template <int N> [[gnu::always_inline]] inline Lanes<N> signs() noexcept {
   if constexpr (N > kNative) {
@@ -127,6 +136,7 @@ template <int N, bool H> [[gnu::always_inline]] inline Lanes<N> operator-(const 
   return each<Lanes<N>>([](auto x) { return -x; }, a);
 }
 
+[[gnu::always_inline]] inline double select(bool which, double a, double b) noexcept { return which ? a : b; }
 template <int M, bool H, class A, class B>
 [[gnu::always_inline]] inline auto select(const MaskOf<M, H>& m, const A& a, const B& b) noexcept {
   constexpr int K = kWidth<A> > kWidth<B> ? kWidth<A> : kWidth<B>;

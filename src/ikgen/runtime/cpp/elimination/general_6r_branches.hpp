@@ -34,7 +34,7 @@ inline void null_vector(const Wide (&A)[6][6], Wide (&x)[6]) noexcept {
   Wide transposed[1][6][6], over[6];
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j) transposed[0][i][j] = A[j][i];
-  Reflected h[1][6];
+  WideReflected h[1][6];
   triangulate<0, 1>(1, transposed, h);
   const auto& rows = transposed[0];
   for (int i = 0; i < 6; ++i) {
@@ -57,7 +57,7 @@ inline void null_vector(const Wide (&A)[6][6], Wide (&x)[6]) noexcept {
 template <class Source>
 inline void inner_angles(const Source& source, const Pair& three, Pair& four, Pair& five) noexcept {
   Wide A[1][6][9], bases[1][3][9], K[6][6], x[6];
-  Reflected unused[1][6];
+  WideReflected unused[1][6];
   fill(source, three.c, three.s, A[0]);
   null_bases(1, A, bases, unused);
   const auto& basis = bases[0];
@@ -90,11 +90,7 @@ inline void outer_angles(const Equations& eq, const WideFrame& U, Pair& one, Pai
   }
   Wide h[6] = {v[2][0], v[2][1], v[2][2], v[2][3], pp, pl};
   for (Index i = 0; i < 6; ++i) h[i] = h[i] - eq.right(8 + i, 0);
-  for (const auto& r : eq.reflector) {
-    Wide dot = spread<kWide>(0.0);
-    for (Index i = 0; i < 6; ++i) dot = dot + r[i] * h[i];
-    for (Index i = 0; i < 6; ++i) h[i] = h[i] - (2.0 * r[i]) * dot;
-  }
+  reflect_turns(eq, h);
   const Wide y = h[1] * (1.0 / eq.r11);
   one = unit((h[0] - eq.r01 * y) * (1.0 / eq.r00), y);
   Wide c = spread<kWide>(0.0), s = c;

@@ -16,9 +16,9 @@ namespace elimination {
 
 // Angles 1 and 2 of the loop from the invariants u of R2^-1 ...: linearly, and by the phase.
 inline std::array<Complex, 2> outer_pair(const Equations& eq, const std::array<double, 14>& u) noexcept {
-  std::array<double, 6> h;
+  double h[6];
   for (Index i = 0; i < 6; ++i) h[i] = u[8 + i] - eq.right(8 + i, 0);
-  for (const auto& r : eq.reflector) reflect(r, h.data());
+  reflect_turns(eq, h);
   const double y = h[1] / eq.r11, x = (h[0] - eq.r01 * y) / eq.r00, n1 = std::sqrt(x * x + y * y) + 1e-300;
   const double c1 = x / n1, s1 = y / n1;
   Complex z2(0.0, 0.0);

@@ -7,6 +7,7 @@
 
 #include "elimination/general_6r_frames.hpp"
 #include "arrays/lanes.hpp"
+#include "arrays/reflections.hpp"
 
 namespace ikgen_runtime {
 
@@ -112,28 +113,14 @@ struct Equations {
   Mat<14, 12> left;  // invariants of C3 R4 C4 R5 C5 in (1, c4, s4) x (1, c5, s5), and three columns of zeros
   Mat<14, 3> right;  // invariants of C1^-1 R1^-1 C6^-1 in (1, c1, s1)
   Mat<14, 16> G;     // action of C2
-  std::array<std::array<double, 6>, 2> reflector;  // Householder vectors of right(8..13, 1..2)
-  double r00, r01, r11;                            // the triangle left over of those columns
+  double mirror[2][6], beta[2];  // reflections of right(8..13, 1..2), see `reflector`
+  double r00, r01, r11;          // the triangle left over of those columns
 };
 
-inline void reflect(const std::array<double, 6>& h, double* x) noexcept {
-  double dot = 0.0;
-  for (Index i = 0; i < 6; ++i) dot += h[i] * x[i];
-  for (Index i = 0; i < 6; ++i) x[i] -= 2.0 * dot * h[i];
-}
-
-inline std::array<double, 6> householder(const double* x, Index from) noexcept {
-  std::array<double, 6> h{};
-  double square = 0.0;
-  for (Index i = from; i < 6; ++i) {
-    square += x[i] * x[i];
-    h[i] = x[i];
-  }
-  const double norm = std::sqrt(square), size = 2.0 * (square + std::abs(x[from]) * norm);
-  h[from] += std::copysign(norm, x[from]);
-  const double over = size > 0.0 ? 1.0 / std::sqrt(size) : 0.0;
-  for (double& a : h) a *= over;
-  return h;
+// What takes the last two columns of right(8..13, ..) to their triangle; of one column, or of those in lanes.
+template <class X> inline void reflect_turns(const Equations& eq, X (&h)[6]) noexcept {
+  reflect<0>(eq.mirror[0], eq.beta[0], h);
+  reflect<1>(eq.mirror[1], eq.beta[1], h);
 }
 
 inline void sample_left(const Loop& loop, Mat<14, 12>& left) noexcept {
@@ -205,14 +192,25 @@ inline void eliminate_turns(Equations& out) noexcept {
     for (Index i = 0; i < 6; ++i) g[i] = load<8>(&out.G(8 + i, k));
     constexpr double constant[8] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0};
     for (Index i = 0; i < 6 && k == 8; ++i) g[i] = g[i] - out.right(8 + i, 0) * load<8>(constant);
-    for (const auto& h : out.reflector) {
-      Lanes<8> dot = h[0] * g[0];
-      for (Index i = 1; i < 6; ++i) dot = dot + h[i] * g[i];
-      dot = 2.0 * dot;
-      for (Index i = 0; i < 6; ++i) g[i] = g[i] - h[i] * dot;
-    }
+    reflect_turns(out, g);
     for (Index i = 0; i < 4; ++i) store(g[i + 2], &out.E(i, k));
   }
+}
+
+inline void triangulate_turns(Equations& out) noexcept {
+  auto& [one, two] = out.mirror;
+  for (Index i = 0; i < 6; ++i) {
+    one[i] = out.right(8 + i, 1);
+    two[i] = out.right(8 + i, 2);
+  }
+  const Reflected<double> first = reflector<0>(one);
+  reflect<0>(one, first.beta, two);
+  out.r01 = two[0];
+  const Reflected<double> second = reflector<1>(two);
+  out.r00 = first.alpha;
+  out.r11 = second.alpha;
+  out.beta[0] = first.beta;
+  out.beta[1] = second.beta;
 }
 
 inline Equations eliminate(const Loop& loop) noexcept {
@@ -220,19 +218,7 @@ inline Equations eliminate(const Loop& loop) noexcept {
   out.G = action(loop.C[1]);  // first, as what reads it as lanes waits for it to be in memory
   sample_left(loop, out.left);
   sample_right(loop, out.right);
-  std::array<double, 6> c1, c2;
-  for (Index i = 0; i < 6; ++i) {
-    c1[i] = out.right(8 + i, 1);
-    c2[i] = out.right(8 + i, 2);
-  }
-  out.reflector[0] = householder(c1.data(), 0);
-  reflect(out.reflector[0], c1.data());
-  reflect(out.reflector[0], c2.data());
-  out.reflector[1] = householder(c2.data(), 1);
-  out.r00 = c1[0];
-  out.r01 = c2[0];
-  reflect(out.reflector[1], c2.data());
-  out.r11 = c2[1];
+  triangulate_turns(out);
   eliminate_turns(out);
   eliminate_pairs(out);
   return out;

@@ -49,7 +49,7 @@ inline Wide linearize(const Chain& F, const Frame& T, const Six& q, Wide (&rows)
 template <int K>
 inline void eliminate_columns(Wide (&columns)[7][6]) noexcept {  // columns K.. of six, and the right side
   if constexpr (K < 6) {
-    const Reflected h = reflector<K>(columns[K]);
+    const WideReflected h = reflector<K>(columns[K]);
     for (int i = K + 1; i < 7; ++i) reflect<K>(columns[K], h.beta, columns[i]);
     columns[K][K] = h.alpha;
     eliminate_columns<K + 1>(columns);

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "elimination/general_6r_equations.hpp"
-#include "arrays/lanes.hpp"
+#include "arrays/reflections.hpp"
 
 namespace ikgen_runtime {
 
@@ -43,52 +43,20 @@ inline unsigned bits(const MaskOf<N, H>& m) noexcept {
   }
 }
 
+using WideReflected = Reflected<Wide>;
+
 inline bool any(const WideMask& mask) noexcept { return bits(mask) != 0; }
-
-struct Reflected {  // a row x -> (alpha, 0, ...): x - beta (x . v) v
-  Wide beta, alpha, square;
-};
-
-// Makes v of entries K.. of the row, in place.
-template <int K, int N>
-inline Reflected reflector(Wide (&row)[N]) noexcept {
-  Wide square = row[K] * row[K], other = spread<kWide>(1e-300);
-  for (int j = K + 1; j < N; ++j) {
-    if (j % 2 == 0)
-      square = square + row[j] * row[j];
-    else
-      other = other + row[j] * row[j];
-  }
-  square = square + other;
-  const Wide norm = sqrt(square);
-  const Wide alpha = select(row[K] > 0.0, -norm, norm);
-  row[K] = row[K] - alpha;
-  return {-1.0 / (alpha * row[K]), alpha, square};
-}
-
-template <int K, int N>
-inline void reflect(const Wide (&v)[N], const Wide& beta, Wide (&row)[N]) noexcept {
-  Wide even = row[K] * v[K], odd = spread<kWide>(0.0);
-  for (int j = K + 1; j < N; ++j) {
-    if (j % 2 == 0)
-      even = even + row[j] * v[j];
-    else
-      odd = odd + row[j] * v[j];
-  }
-  const Wide dot = beta * (even + odd);
-  for (int j = K; j < N; ++j) row[j] = row[j] - dot * v[j];
-}
 
 // R rows of N entries, in G groups of lanes. All groups take each step before any takes the next, and a row is
 // reflected as soon as the next step needs it: nothing waits long for square roots.
 template <int K, int G, int R, int N>
-inline void reflectors(int groups, Wide (&A)[G][R][N], Reflected (&h)[G][R]) noexcept {
+inline void reflectors(int groups, Wide (&A)[G][R][N], WideReflected (&h)[G][R]) noexcept {
   for (int g = 0; g < groups; ++g) h[g][K] = reflector<K>(A[g][K]);
 }
 
 // Rows K.. of A to lower triangular form, but for the last L rows.
 template <int K, int L, int G, int R, int N>
-inline void triangulate(int groups, Wide (&A)[G][R][N], Reflected (&h)[G][R]) noexcept {
+inline void triangulate(int groups, Wide (&A)[G][R][N], WideReflected (&h)[G][R]) noexcept {
   if constexpr (K == 0) reflectors<0>(groups, A, h);
   if constexpr (K + 1 < R)
     for (int g = 0; g < groups; ++g) reflect<K>(A[g][K], h[g][K].beta, A[g][K + 1]);
@@ -99,7 +67,7 @@ inline void triangulate(int groups, Wide (&A)[G][R][N], Reflected (&h)[G][R]) no
 }
 
 template <int K, int G>
-inline void carry_back(int groups, const Wide (&A)[G][6][9], const Reflected (&h)[G][6],
+inline void carry_back(int groups, const Wide (&A)[G][6][9], const WideReflected (&h)[G][6],
                        Wide (&basis)[G][3][9]) noexcept {
   for (int g = 0; g < groups; ++g)
     for (auto& n : basis[g]) reflect<K>(A[g][K], h[g][K].beta, n);
@@ -113,7 +81,7 @@ inline void fill(const Pencil& p, const Wide& c, const Wide& s, Wide (&A)[6][9])
 
 // Orthonormal null vectors, and what triangulate says of A's rows, which it makes triangular.
 template <int G>
-inline void null_bases(int groups, Wide (&A)[G][6][9], Wide (&basis)[G][3][9], Reflected (&h)[G][6]) noexcept {
+inline void null_bases(int groups, Wide (&A)[G][6][9], Wide (&basis)[G][3][9], WideReflected (&h)[G][6]) noexcept {
   triangulate<0, 0>(groups, A, h);
   for (int g = 0; g < groups; ++g)
     for (int k = 0; k < 3; ++k)

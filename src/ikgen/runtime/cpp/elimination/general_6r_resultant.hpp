@@ -45,7 +45,7 @@ struct Spread {
   Wide squares, ratio;  // det(A A^T); largest ratio of a row to what is left of it
 };
 
-inline Spread spread_of(const Reflected (&h)[6], const RowSizes& sizes) noexcept {
+inline Spread spread_of(const WideReflected (&h)[6], const RowSizes& sizes) noexcept {
   Wide least = sizes.over[0] * h[0].square;
   for (int k = 1; k < 6; ++k) least = min(least, sizes.over[k] * h[k].square);
   const Wide squares = ((h[0].square * h[1].square) * (h[2].square * h[3].square)) * (h[4].square * h[5].square);
@@ -54,7 +54,7 @@ inline Spread spread_of(const Reflected (&h)[6], const RowSizes& sizes) noexcept
 
 // Frobenius norm of the adjugate of a matrix [[L, 0], [M, C]] Q, L 4x4 with the product of its diagonal, C 2x2 with
 // its determinant: det L (det C L^-1; -adj C M L^-1, adj C).
-inline Wide adjugate_size(const Wide (&A)[6][6], const Reflected (&h)[6], const Wide& product,
+inline Wide adjugate_size(const Wide (&A)[6][6], const WideReflected (&h)[6], const Wide& product,
                           const Wide& corner) noexcept {
   Wide X[4][4], inner = spread<kWide>(0.0), outer = inner;
   for (int i = 0; i < 4; ++i) {
@@ -89,7 +89,7 @@ template <class Source>
 [[gnu::noinline]] inline void resultants_of(int groups, const Source& p, const RowSizes& sizes, bool close,
                                             const double* c, const double* s, double* f, double* blur) noexcept {
   Wide A[kGroups][6][9], basis[kGroups][3][9], K[kGroups][6][6];
-  Reflected h[kGroups][6], k[kGroups][6];
+  WideReflected h[kGroups][6], k[kGroups][6];
   for (int g = 0; g < groups; ++g) fill(p, load<kWide>(c + g * kWide), load<kWide>(s + g * kWide), A[g]);
   null_bases(groups, A, basis, h);
   for (int g = 0; g < groups; ++g) half_angles(basis[g], K[g]);
