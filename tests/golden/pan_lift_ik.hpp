@@ -1544,6 +1544,21 @@ template <class Arm> struct RightRows {
   }
 };
 
+// --- false position ------------------------------------------------------------------------------
+struct FalsePosition {
+  double first, last;
+  int kept = 0;
+
+  double share() const noexcept { return first / (first - last); }
+
+  void take(double value, bool of_first) noexcept {
+    const int end = of_first ? 1 : -1;
+    (of_first ? first : last) = value;
+    if (kept == end) (of_first ? last : first) *= 0.5;
+    kept = end;
+  }
+};
+
 // --- curve parts ---------------------------------------------------------------------------------
 template <class Arm> struct CurveParts : CurveSamples<Arm> {
   using Curve = CurveSamples<Arm>;
@@ -1646,16 +1661,16 @@ template <class Arm> struct CurveParts : CurveSamples<Arm> {
   }
 
   bool close_in(Sample a, Sample b, double most) noexcept {
-    double x = a.left, y = b.left, way = kInfinity, goal = kInfinity;
+    double way = kInfinity, goal = kInfinity;
     bool led = true;
-    int kept = 0;
+    FalsePosition ends{a.left, b.left};
     for (int i = 0; i < kSteps && way > kWay; ++i) {
       const double product = std::abs(a.left * b.left);
       if (std::min(std::abs(a.left), std::abs(b.left)) <= kRoundOff) break;
       led = i % kSoon != 0 || product <= goal;
       if (!led) break;
       if (i % kSoon == 0) goal = 0.5 * product;
-      const double share = x / (x - y);
+      const double share = ends.share();
       const Sample c = part(a, b, i < kCubics ? root_share(a, b, share) : share);
       led = std::abs(c.left) <= most;
       if (!led) break;
@@ -1663,17 +1678,8 @@ template <class Arm> struct CurveParts : CurveSamples<Arm> {
       way = 0.0;
       for (int k = 0; k < Fold::kMoving; ++k)
         way = std::max(way, std::abs(c.q[Fold::kJoints[k]] - (last ? b : a).q[Fold::kJoints[k]]));
-      if (last) {
-        b = c;
-        y = c.left;
-        if (kept == 1) x *= 0.5;
-        kept = 1;
-      } else {
-        a = c;
-        x = c.left;
-        if (kept == -1) y *= 0.5;
-        kept = -1;
-      }
+      (last ? b : a) = c;
+      ends.take(c.left, !last);
     }
     keep(std::abs(a.left) < std::abs(b.left) ? a : b);
     return led;

@@ -3,6 +3,7 @@
 
 #include "held/branch_curve.hpp"
 #include "held/held_sweep.hpp"
+#include "roots/false_position.hpp"
 
 namespace ikgen_runtime {
 
@@ -122,25 +123,18 @@ template <class Arm> struct BranchArc {
     return true;
   }
 
-  // Where `value` of the points changes its sign: by false position, halving what an end keeps (Dowell & Jarratt 1971).
+  // Where `value` of the points changes its sign.
   template <class Value, class Before, class Close>
   bool cross(Point a, Point b, double x, double y, const Value& value, const Before& before, const Close& close,
              Point& out) const noexcept {
-    for (int i = 0, kept = 0; i < kMost; ++i) {
-      const double part = x / (x - y);
+    FalsePosition ends{x, y};
+    for (int i = 0; i < kMost; ++i) {
+      const double part = ends.share();
       if (!find(a.share + part * (b.share - a.share), part < 0.5 ? a : b, out)) return false;
       if (close(out)) return true;
-      if (before(out)) {
-        a = out;
-        x = value(out);
-        if (kept == 1) y *= 0.5;
-        kept = 1;
-      } else {
-        b = out;
-        y = value(out);
-        if (kept == -1) x *= 0.5;
-        kept = -1;
-      }
+      const bool first = before(out);
+      (first ? a : b) = out;
+      ends.take(value(out), first);
     }
     out = a;
     return true;

@@ -1,6 +1,7 @@
 // Solutions on parts of a curve, between two samples of it, by what is left of the error there and how that grows.
 #pragma once
 
+#include "roots/false_position.hpp"
 #include "rows/solution_rows.hpp"
 #include "singular/curve_samples.hpp"
 
@@ -115,20 +116,20 @@ template <class Arm> struct CurveParts : CurveSamples<Arm> {
     return x;
   }
 
-  // Where what is left changes its sign: first at roots of cubics, then by false position, halving what an end keeps
-  // (Dowell & Jarratt 1971), until that is round-off, or the way to there is. Where far more is left between the samples
-  // than the cubic's coefficients bound, or the product at the ends hardly falls, they are of no one curve: then false.
+  // Where what is left changes its sign: first at roots of cubics, then by false position, until that is round-off, or the
+  // way to there is. Where far more is left between the samples than the cubic's coefficients bound, or the product at the
+  // ends hardly falls, they are of no one curve: then false.
   bool close_in(Sample a, Sample b, double most) noexcept {
-    double x = a.left, y = b.left, way = kInfinity, goal = kInfinity;
+    double way = kInfinity, goal = kInfinity;
     bool led = true;
-    int kept = 0;
+    FalsePosition ends{a.left, b.left};
     for (int i = 0; i < kSteps && way > kWay; ++i) {
       const double product = std::abs(a.left * b.left);
       if (std::min(std::abs(a.left), std::abs(b.left)) <= kRoundOff) break;
       led = i % kSoon != 0 || product <= goal;
       if (!led) break;
       if (i % kSoon == 0) goal = 0.5 * product;
-      const double share = x / (x - y);
+      const double share = ends.share();
       const Sample c = part(a, b, i < kCubics ? root_share(a, b, share) : share);
       led = std::abs(c.left) <= most;
       if (!led) break;
@@ -136,17 +137,8 @@ template <class Arm> struct CurveParts : CurveSamples<Arm> {
       way = 0.0;
       for (int k = 0; k < Fold::kMoving; ++k)
         way = std::max(way, std::abs(c.q[Fold::kJoints[k]] - (last ? b : a).q[Fold::kJoints[k]]));
-      if (last) {
-        b = c;
-        y = c.left;
-        if (kept == 1) x *= 0.5;
-        kept = 1;
-      } else {
-        a = c;
-        x = c.left;
-        if (kept == -1) y *= 0.5;
-        kept = -1;
-      }
+      (last ? b : a) = c;
+      ends.take(c.left, !last);
     }
     keep(std::abs(a.left) < std::abs(b.left) ? a : b);
     return led;
