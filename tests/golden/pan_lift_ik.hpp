@@ -476,6 +476,32 @@ template <int I, class X, int N> [[gnu::always_inline]] inline void factor_rows(
   A[I][I] = 1.0 / max(rest, least);
   if constexpr (I + 1 < N) factor_rows<I + 1>(A, least);
 }
+template <int I, class X, int Rows, int Columns>
+[[gnu::always_inline]] inline void column_products(const X (&V)[Rows][Columns], X (&G)[Columns][Columns]) noexcept {
+  for (int k = 0; k <= I; ++k) {
+    X sum = V[0][I] * V[0][k];
+    for (int r = 1; r < Rows; ++r) sum = sum + V[r][I] * V[r][k];
+    G[I][k] = sum;
+  }
+  if constexpr (I + 1 < Columns) column_products<I + 1>(V, G);
+}
+
+template <class X, int Rows, int Columns>
+inline void gram_of_columns(const X (&V)[Rows][Columns], X (&G)[Columns][Columns]) noexcept {
+  column_products<0>(V, G);
+}
+template <class X, int Rows, int Columns>
+inline void gram_of_rows(const X (&V)[Rows][Columns], X (&G)[Rows][Rows]) noexcept {
+  for (int a = 0; a < Rows; ++a)
+    for (int b = 0; b <= a; ++b) {
+      G[a][b] = V[a][0] * V[b][0];
+      for (int k = 1; k < Columns; ++k) G[a][b] = G[a][b] + V[a][k] * V[b][k];
+    }
+}
+
+template <class X, class Y, int N> inline void shift_diagonal(const Y& x, X (&A)[N][N]) noexcept {
+  for (int i = 0; i < N; ++i) A[i][i] = A[i][i] + x;
+}
 
 template <class X, int N> inline void factor(X (&A)[N][N], double least = 1e-300) noexcept { factor_rows<0>(A, least); }
 
@@ -537,6 +563,24 @@ template <class Factor, class X, int N> inline void substitute(const Factor (&A)
   for (int i = 0; i < N; ++i) x[i] = x[i] * A[i][i];
   for (int i = N - 2; i >= 0; --i)
     for (int k = N - 1; k > i; --k) x[i] = x[i] - A[k][i] * x[k];
+}
+
+template <class Entry, class X, int Rows, int Columns>
+inline void transposed_times(const Entry (&V)[Rows][Columns], const X (&e)[Rows], X (&out)[Columns]) noexcept {
+  for (int k = 0; k < Columns; ++k) {
+    out[k] = V[0][k] * e[0];
+    for (int r = 1; r < Rows; ++r) out[k] = out[k] + V[r][k] * e[r];
+  }
+}
+
+template <class X, class Y, int Rows, int Columns>
+inline void least_squares(const X (&V)[Rows][Columns], const X (&e)[Rows], const Y& damping, X (&x)[Columns]) noexcept {
+  X A[Columns][Columns];
+  gram_of_columns(V, A);
+  shift_diagonal(damping, A);
+  transposed_times(V, e, x);
+  factor(A);
+  substitute(A, x);
 }
 
 // --- motion chain --------------------------------------------------------------------------------
@@ -816,18 +860,7 @@ inline void damped_step(const X (&V)[Rows][Columns], const X (&e)[Rows], const X
   using std::max;
   using std::min;
   const X bounded = min(worst, 1.0);
-  X A[Columns][Columns];
-  for (int i = 0; i < Columns; ++i) {
-    for (int j = 0; j <= i; ++j) {
-      A[i][j] = V[0][i] * V[0][j];
-      for (int r = 1; r < Rows; ++r) A[i][j] = A[i][j] + V[r][i] * V[r][j];
-    }
-    A[i][i] = A[i][i] + max(Policy::kDamping * (bounded * bounded), Policy::kLeastDamping);
-    x[i] = V[0][i] * e[0];
-    for (int r = 1; r < Rows; ++r) x[i] = x[i] + V[r][i] * e[r];
-  }
-  factor(A);
-  substitute(A, x);
+  least_squares(V, e, max(Policy::kDamping * (bounded * bounded), Policy::kLeastDamping), x);
   for (X& one : x) one = min(max(one, -Policy::kLargestStep), Policy::kLargestStep);
 }
 
@@ -1107,6 +1140,83 @@ template <class Arm> struct RowPair {
   }
 };
 
+// --- least eigenvalue ----------------------------------------------------------------------------
+template <class Pack, int N>
+inline void tridiagonal(Pack (&S)[N][N], Pack (&diagonal)[N], Pack (&squares)[N]) noexcept {
+  squares[0] = spread<kWidth<Pack>>(0.0);
+  for (int k = 0; k < N; ++k) {
+    diagonal[k] = S[k][k];
+    if (k + 1 == N) return;
+    Pack v[N], w[N], length = spread<kWidth<Pack>>(0.0), product = length;
+    for (int i = k + 1; i < N; ++i) {
+      v[i] = S[i][k];
+      length = length + v[i] * v[i];
+    }
+    squares[k + 1] = length;
+    if (k + 2 == N) continue;
+    const Pack root = sqrt(length), turned = select(v[k + 1] > 0.0, root, -root);
+    const Pack scale = 1.0 / max(length + abs(v[k + 1]) * root, 1e-300);
+    v[k + 1] = v[k + 1] + turned;
+    for (int i = k + 1; i < N; ++i) {
+      w[i] = spread<kWidth<Pack>>(0.0);
+      for (int j = k + 1; j < N; ++j) w[i] = w[i] + S[i][j] * v[j];
+      w[i] = scale * w[i];
+      product = product + w[i] * v[i];
+    }
+    product = 0.5 * scale * product;
+    for (int i = k + 1; i < N; ++i) w[i] = w[i] - product * v[i];
+    for (int i = k + 1; i < N; ++i)
+      for (int j = k + 1; j <= i; ++j) {
+        S[i][j] = S[i][j] - (v[i] * w[j] + w[i] * v[j]);
+        S[j][i] = S[i][j];
+      }
+  }
+}
+
+template <class Pack, int N> inline Pack least_root(const Pack (&diagonal)[N], const Pack (&squares)[N]) noexcept {
+  constexpr int kSteps = 40;
+  constexpr double n = N;
+  Pack x = spread<kWidth<Pack>>(0.0), last = x;
+  for (int i = 0; i < kSteps; ++i) {
+    Pack p = diagonal[0] - x, before = spread<kWidth<Pack>>(1.0), d = -before, d_before = before - 1.0, h = d_before, h_before = h;
+    for (int k = 1; k < N; ++k) {
+      const Pack at = diagonal[k] - x;
+      const Pack next = at * p - squares[k] * before, d_next = at * d - p - squares[k] * d_before;
+      const Pack h_next = at * h - 2.0 * d - squares[k] * h_before;
+      before = p;
+      d_before = d;
+      h_before = h;
+      p = next;
+      d = d_next;
+      h = h_next;
+    }
+    const auto left = (p > 0.0) & (0.0 > d);  // of all roots
+    const Pack over = 1.0 / select(left, p, 1.0), g = -d * over;
+    const Pack step = n / (g + sqrt((n - 1.0) * ((n - 1.0) * g * g - n * h * over)));
+    x = x + select(left, step, 0.0);
+    if (all(!(left & (step * step > 1e-15 * x * last)))) break;
+    last = step;
+  }
+  return x;
+}
+
+template <class Pack, int Rows, int Columns, int N>
+inline void take_products(const Pack (&J)[Rows][Columns], Pack (&S)[N][N]) noexcept {
+  if constexpr (N == Rows) {
+    gram_of_rows(J, S);
+  } else {
+    gram_of_columns(J, S);
+  }
+  for (int a = 0; a < N; ++a)
+    for (int b = 0; b < a; ++b) S[b][a] = S[a][b];
+}
+
+template <class Pack, int N> inline Pack least_eigenvalue(Pack (&S)[N][N]) noexcept {
+  Pack diagonal[N], squares[N];
+  tridiagonal(S, diagonal, squares);
+  return least_root(diagonal, squares);
+}
+
 // --- moving joints -------------------------------------------------------------------------------
 template <class Arm> struct MovingJoints {
   static constexpr int kCount = Arm::kDof - static_cast<int>(Arm::kFreeJoints.size());
@@ -1117,6 +1227,11 @@ template <class Arm> struct MovingJoints {
       if (!Arm::kHeld[j]) joint[k++] = j;
   }
   constexpr int operator[](int k) const noexcept { return joint[k]; }
+
+  template <class X, int Rows> void columns(const X (&of)[Rows][Arm::kDof], X (&out)[Rows][kCount]) const noexcept {
+    for (int r = 0; r < Rows; ++r)
+      for (int k = 0; k < kCount; ++k) out[r][k] = of[r][joint[k]];
+  }
 };
 
 template <class Arm> struct AllMoving : Arm {
@@ -1157,18 +1272,14 @@ template <class Arm> struct SingularValue {
   }
 
   template <class X> static auto above(const X (&slope)[kEquations][Arm::kDof], double bound) noexcept {
-    X A[kRank][kRank];
-    for (int a = 0; a < kRank; ++a)
-      for (int b = 0; b <= a; ++b) {
-        if constexpr (kMoving < kEquations) {
-          A[a][b] = slope[0][kJoints[a]] * slope[0][kJoints[b]];
-          for (int e = 1; e < kEquations; ++e) A[a][b] = A[a][b] + slope[e][kJoints[a]] * slope[e][kJoints[b]];
-        } else {
-          A[a][b] = slope[a][kJoints[0]] * slope[b][kJoints[0]];
-          for (int k = 1; k < kMoving; ++k) A[a][b] = A[a][b] + slope[a][kJoints[k]] * slope[b][kJoints[k]];
-        }
-        if (a == b) A[a][b] = A[a][b] - bound * bound;
-      }
+    X V[kEquations][kMoving], A[kRank][kRank];
+    kJoints.columns(slope, V);
+    if constexpr (kMoving < kEquations) {
+      gram_of_columns(V, A);
+    } else {
+      gram_of_rows(V, A);
+    }
+    shift_diagonal(-bound * bound, A);
     factor(A);
     return definite(A);
   }
@@ -2574,24 +2685,15 @@ template <class Arm> struct NearestRow {
   }
 
   static double step(const Chords& at, bool limits, double damping, double* q) noexcept {
-    double A[Arm::kDof][Arm::kDof], x[Arm::kDof], low[Arm::kDof], high[Arm::kDof];
+    double V[Chords::kCount][Arm::kDof], push[Arm::kDof], x[Arm::kDof], low[Arm::kDof], high[Arm::kDof], gain = 0.0;
     bool stuck[Arm::kDof];
+    transposed_times(at.slope, at.error, push);
     for (int j = 0; j < Arm::kDof; ++j) {
       bounds(j, limits, low + j, high + j);
-      x[j] = 0.0;
-      for (int e = 0; e < Chords::kCount; ++e) x[j] += at.slope[e][j] * at.error[e];
-      stuck[j] = Arm::kHeld[j] || (q[j] <= low[j] && x[j] < 0.0) || (q[j] >= high[j] && x[j] > 0.0);
-      if (stuck[j]) x[j] = 0.0;
+      stuck[j] = Arm::kHeld[j] || (q[j] <= low[j] && push[j] < 0.0) || (q[j] >= high[j] && push[j] > 0.0);
+      for (int e = 0; e < Chords::kCount; ++e) V[e][j] = stuck[j] ? 0.0 : at.slope[e][j];
     }
-    for (int i = 0; i < Arm::kDof; ++i)
-      for (int j = 0; j <= i; ++j) {
-        A[i][j] = i == j ? damping : 0.0;
-        for (int e = 0; e < Chords::kCount && !stuck[i] && !stuck[j]; ++e) A[i][j] += at.slope[e][i] * at.slope[e][j];
-      }
-    double push[Arm::kDof], gain = 0.0;
-    std::copy_n(x, Arm::kDof, push);
-    factor(A);
-    substitute(A, x);
+    least_squares(V, at.error, damping, x);
     for (int j = 0; j < Arm::kDof; ++j) {
       gain += push[j] * x[j];
       if (!stuck[j]) q[j] = std::clamp(q[j] + std::clamp(x[j], -kLongest, kLongest), low[j], high[j]);
@@ -3236,13 +3338,9 @@ template <class Arm, class Solver> struct PathStep {
     constexpr int n = PoseError<AllMoving<Arm>>::kCount;
     const double worst = here.largest();
     double N[n][n];
-    for (auto& row : here.slope)
-      for (int j = 0; j < kDof; ++j) row[j] = stopped[j] ? 0.0 : row[j];
-    for (int a = 0; a < n; ++a)
-      for (int b = 0; b <= a; ++b) {
-        N[a][b] = a == b ? damping : 0.0;
-        for (int j = 0; j < kDof; ++j) N[a][b] += here.slope[a][j] * here.slope[b][j];
-      }
+    here.hold(stopped);
+    gram_of_rows(here.slope, N);
+    shift_diagonal(damping, N);
     factor(N);
     substitute(N, here.error);
     for (int j = 0; j < kDof; ++j) {
@@ -3309,84 +3407,6 @@ inline Walk follow_poses(const Eigen::Isometry3d* poses, std::ptrdiff_t count, c
   }
   out.status = Status::Ok;
   return out;
-}
-
-// --- least eigenvalue ----------------------------------------------------------------------------
-template <class Pack, int N>
-inline void tridiagonal(Pack (&S)[N][N], Pack (&diagonal)[N], Pack (&squares)[N]) noexcept {
-  squares[0] = spread<kWidth<Pack>>(0.0);
-  for (int k = 0; k < N; ++k) {
-    diagonal[k] = S[k][k];
-    if (k + 1 == N) return;
-    Pack v[N], w[N], length = spread<kWidth<Pack>>(0.0), product = length;
-    for (int i = k + 1; i < N; ++i) {
-      v[i] = S[i][k];
-      length = length + v[i] * v[i];
-    }
-    squares[k + 1] = length;
-    if (k + 2 == N) continue;
-    const Pack root = sqrt(length), turned = select(v[k + 1] > 0.0, root, -root);
-    const Pack scale = 1.0 / max(length + abs(v[k + 1]) * root, 1e-300);
-    v[k + 1] = v[k + 1] + turned;
-    for (int i = k + 1; i < N; ++i) {
-      w[i] = spread<kWidth<Pack>>(0.0);
-      for (int j = k + 1; j < N; ++j) w[i] = w[i] + S[i][j] * v[j];
-      w[i] = scale * w[i];
-      product = product + w[i] * v[i];
-    }
-    product = 0.5 * scale * product;
-    for (int i = k + 1; i < N; ++i) w[i] = w[i] - product * v[i];
-    for (int i = k + 1; i < N; ++i)
-      for (int j = k + 1; j <= i; ++j) {
-        S[i][j] = S[i][j] - (v[i] * w[j] + w[i] * v[j]);
-        S[j][i] = S[i][j];
-      }
-  }
-}
-
-template <class Pack, int N> inline Pack least_root(const Pack (&diagonal)[N], const Pack (&squares)[N]) noexcept {
-  constexpr int kSteps = 40;
-  constexpr double n = N;
-  Pack x = spread<kWidth<Pack>>(0.0), last = x;
-  for (int i = 0; i < kSteps; ++i) {
-    Pack p = diagonal[0] - x, before = spread<kWidth<Pack>>(1.0), d = -before, d_before = before - 1.0, h = d_before, h_before = h;
-    for (int k = 1; k < N; ++k) {
-      const Pack at = diagonal[k] - x;
-      const Pack next = at * p - squares[k] * before, d_next = at * d - p - squares[k] * d_before;
-      const Pack h_next = at * h - 2.0 * d - squares[k] * h_before;
-      before = p;
-      d_before = d;
-      h_before = h;
-      p = next;
-      d = d_next;
-      h = h_next;
-    }
-    const auto left = (p > 0.0) & (0.0 > d);  // of all roots
-    const Pack over = 1.0 / select(left, p, 1.0), g = -d * over;
-    const Pack step = n / (g + sqrt((n - 1.0) * ((n - 1.0) * g * g - n * h * over)));
-    x = x + select(left, step, 0.0);
-    if (all(!(left & (step * step > 1e-15 * x * last)))) break;
-    last = step;
-  }
-  return x;
-}
-
-template <class Pack, int Rows, int Columns, int N>
-inline void take_products(const Pack (&J)[Rows][Columns], Pack (&S)[N][N]) noexcept {
-  constexpr bool by_rows = N == Rows;
-  for (int a = 0; a < N; ++a)
-    for (int b = 0; b <= a; ++b) {
-      S[a][b] = spread<kWidth<Pack>>(0.0);
-      for (int k = 0; k < (by_rows ? Columns : Rows); ++k)
-        S[a][b] = S[a][b] + (by_rows ? J[a][k] * J[b][k] : J[k][a] * J[k][b]);
-      S[b][a] = S[a][b];
-    }
-}
-
-template <class Pack, int N> inline Pack least_eigenvalue(Pack (&S)[N][N]) noexcept {
-  Pack diagonal[N], squares[N];
-  tridiagonal(S, diagonal, squares);
-  return least_root(diagonal, squares);
 }
 
 // --- least singular value ------------------------------------------------------------------------

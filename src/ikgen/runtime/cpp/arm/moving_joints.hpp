@@ -14,6 +14,12 @@ template <class Arm> struct MovingJoints {
       if (!Arm::kHeld[j]) joint[k++] = j;
   }
   constexpr int operator[](int k) const noexcept { return joint[k]; }
+
+  // Their columns of a matrix.
+  template <class X, int Rows> void columns(const X (&of)[Rows][Arm::kDof], X (&out)[Rows][kCount]) const noexcept {
+    for (int r = 0; r < Rows; ++r)
+      for (int k = 0; k < kCount; ++k) out[r][k] = of[r][joint[k]];
+  }
 };
 
 // An arm all of whose joints move.

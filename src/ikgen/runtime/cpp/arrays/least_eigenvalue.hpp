@@ -2,6 +2,7 @@
 #pragma once
 
 #include "arrays/lanes.hpp"
+#include "arrays/small_matrix.hpp"
 
 namespace ikgen_runtime {
 
@@ -70,14 +71,13 @@ template <class Pack, int N> inline Pack least_root(const Pack (&diagonal)[N], c
 // J J^T, or J^T J where S is of that order.
 template <class Pack, int Rows, int Columns, int N>
 inline void take_products(const Pack (&J)[Rows][Columns], Pack (&S)[N][N]) noexcept {
-  constexpr bool by_rows = N == Rows;
+  if constexpr (N == Rows) {
+    gram_of_rows(J, S);
+  } else {
+    gram_of_columns(J, S);
+  }
   for (int a = 0; a < N; ++a)
-    for (int b = 0; b <= a; ++b) {
-      S[a][b] = spread<kWidth<Pack>>(0.0);
-      for (int k = 0; k < (by_rows ? Columns : Rows); ++k)
-        S[a][b] = S[a][b] + (by_rows ? J[a][k] * J[b][k] : J[k][a] * J[k][b]);
-      S[b][a] = S[a][b];
-    }
+    for (int b = 0; b < a; ++b) S[b][a] = S[a][b];
 }
 
 // Given whole; S is lost.

@@ -14,8 +14,8 @@ template <class X> inline void cross(const X* a, const X* b, X* out) noexcept {
   out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-// Rows I and on of the factors below. A function a row: loops over rows that grow are left rolled, and 6x6 doubles take two
-// to three times as long.
+// Rows I and on of what follows, the factors of a matrix and products of columns. A function a row: loops over rows that
+// grow are left rolled, and 6x6 doubles take two to three times as long to factor.
 template <int I, class X, int N> [[gnu::always_inline]] inline void factor_rows(X (&A)[N][N], double least) noexcept {
   using std::max;
   X rest = A[I][I], row[N];
@@ -29,6 +29,34 @@ template <int I, class X, int N> [[gnu::always_inline]] inline void factor_rows(
   }
   A[I][I] = 1.0 / max(rest, least);
   if constexpr (I + 1 < N) factor_rows<I + 1>(A, least);
+}
+template <int I, class X, int Rows, int Columns>
+[[gnu::always_inline]] inline void column_products(const X (&V)[Rows][Columns], X (&G)[Columns][Columns]) noexcept {
+  for (int k = 0; k <= I; ++k) {
+    X sum = V[0][I] * V[0][k];
+    for (int r = 1; r < Rows; ++r) sum = sum + V[r][I] * V[r][k];
+    G[I][k] = sum;
+  }
+  if constexpr (I + 1 < Columns) column_products<I + 1>(V, G);
+}
+
+// Products of a matrix's columns, V^T V, or of its rows, V V^T, up to the diagonal (Gram 1883). X: double, or lanes.
+template <class X, int Rows, int Columns>
+inline void gram_of_columns(const X (&V)[Rows][Columns], X (&G)[Columns][Columns]) noexcept {
+  column_products<0>(V, G);
+}
+template <class X, int Rows, int Columns>
+inline void gram_of_rows(const X (&V)[Rows][Columns], X (&G)[Rows][Rows]) noexcept {
+  for (int a = 0; a < Rows; ++a)
+    for (int b = 0; b <= a; ++b) {
+      G[a][b] = V[a][0] * V[b][0];
+      for (int k = 1; k < Columns; ++k) G[a][b] = G[a][b] + V[a][k] * V[b][k];
+    }
+}
+
+// Adds x to the diagonal.
+template <class X, class Y, int N> inline void shift_diagonal(const Y& x, X (&A)[N][N]) noexcept {
+  for (int i = 0; i < N; ++i) A[i][i] = A[i][i] + x;
 }
 
 // The factors of A = L D L^T, symmetric and given up to its diagonal, in its place: L below the diagonal, the inverse of D
@@ -98,6 +126,26 @@ template <class Factor, class X, int N> inline void substitute(const Factor (&A)
   for (int i = 0; i < N; ++i) x[i] = x[i] * A[i][i];
   for (int i = N - 2; i >= 0; --i)
     for (int k = N - 1; k > i; --k) x[i] = x[i] - A[k][i] * x[k];
+}
+
+// V^T e; X may be a pack where V is of doubles.
+template <class Entry, class X, int Rows, int Columns>
+inline void transposed_times(const Entry (&V)[Rows][Columns], const X (&e)[Rows], X (&out)[Columns]) noexcept {
+  for (int k = 0; k < Columns; ++k) {
+    out[k] = V[0][k] * e[0];
+    for (int r = 1; r < Rows; ++r) out[k] = out[k] + V[r][k] * e[r];
+  }
+}
+
+// The least squares solution of V x = e by normal equations, to whose diagonal `damping` is added. X: double, or lanes.
+template <class X, class Y, int Rows, int Columns>
+inline void least_squares(const X (&V)[Rows][Columns], const X (&e)[Rows], const Y& damping, X (&x)[Columns]) noexcept {
+  X A[Columns][Columns];
+  gram_of_columns(V, A);
+  shift_diagonal(damping, A);
+  transposed_times(V, e, x);
+  factor(A);
+  substitute(A, x);
 }
 
 }  // namespace ikgen_runtime

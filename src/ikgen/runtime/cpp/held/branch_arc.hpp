@@ -168,16 +168,14 @@ template <class Arm> struct BranchArc {
   double step(Point& p, const Vector& row, double left) const noexcept {
     const Curve at(sweep.pose, p.q, p.held);
     Vector d;
-    double A[kVariables][kVariables], farthest = 0.0;
-    for (int a = 0; a < kVariables; ++a) {
-      d[a] = row[a] * left;
-      p.flow[a] = row[a];
-      for (int e = 0; e < Curve::kCount; ++e) d[a] += at.slope[e][a] * at.error[e];
-      for (int b = 0; b <= a; ++b) {
-        A[a][b] = row[a] * row[b];
-        for (int e = 0; e < Curve::kCount; ++e) A[a][b] += at.slope[e][a] * at.slope[e][b];
-      }
-    }
+    double V[Curve::kCount + 1][kVariables], error[Curve::kCount + 1], A[kVariables][kVariables], farthest = 0.0;
+    std::copy_n(&at.slope[0][0], Curve::kCount * kVariables, &V[0][0]);
+    std::copy_n(at.error, Curve::kCount, error);
+    std::copy_n(row, kVariables, V[Curve::kCount]);
+    std::copy_n(row, kVariables, p.flow);
+    error[Curve::kCount] = left;
+    transposed_times(V, error, d);
+    gram_of_columns(V, A);
     factor(A);
     substitute(A, d);
     substitute(A, p.flow);

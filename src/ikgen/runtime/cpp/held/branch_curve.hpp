@@ -3,6 +3,7 @@
 
 #include "arm/moving_joints.hpp"
 #include "arm/pose_error.hpp"
+#include "arrays/small_matrix.hpp"
 
 namespace ikgen_runtime {
 
@@ -29,17 +30,12 @@ template <class Arm> struct BranchCurve {
 
   // Derivatives of all joints by the held value, by least squares.
   void flow(double (&out)[Arm::kDof]) const noexcept {
-    double A[kMoving][kMoving], d[kMoving];
-    for (int a = 0; a < kMoving; ++a) {
-      d[a] = 0.0;
-      for (int e = 0; e < kCount; ++e) d[a] -= slope[e][a] * slope[e][kMoving];
-      for (int b = 0; b <= a; ++b) {
-        A[a][b] = 0.0;
-        for (int e = 0; e < kCount; ++e) A[a][b] += slope[e][a] * slope[e][b];
-      }
+    double V[kCount][kMoving], by_held[kCount], d[kMoving];
+    for (int e = 0; e < kCount; ++e) {
+      std::copy_n(slope[e], kMoving, V[e]);
+      by_held[e] = -slope[e][kMoving];
     }
-    factor(A);
-    substitute(A, d);
+    least_squares(V, by_held, 0.0, d);
     for (int j = 0; j < Arm::kDof; ++j) out[j] = Arm::kHeld[j] ? 1.0 : 0.0;
     for (int k = 0; k < kMoving; ++k) out[kJoints[k]] = d[k];
   }

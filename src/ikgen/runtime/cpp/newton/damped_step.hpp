@@ -11,18 +11,7 @@ inline void damped_step(const X (&V)[Rows][Columns], const X (&e)[Rows], const X
   using std::max;
   using std::min;
   const X bounded = min(worst, 1.0);
-  X A[Columns][Columns];
-  for (int i = 0; i < Columns; ++i) {
-    for (int j = 0; j <= i; ++j) {
-      A[i][j] = V[0][i] * V[0][j];
-      for (int r = 1; r < Rows; ++r) A[i][j] = A[i][j] + V[r][i] * V[r][j];
-    }
-    A[i][i] = A[i][i] + max(Policy::kDamping * (bounded * bounded), Policy::kLeastDamping);
-    x[i] = V[0][i] * e[0];
-    for (int r = 1; r < Rows; ++r) x[i] = x[i] + V[r][i] * e[r];
-  }
-  factor(A);
-  substitute(A, x);
+  least_squares(V, e, max(Policy::kDamping * (bounded * bounded), Policy::kLeastDamping), x);
   for (X& one : x) one = min(max(one, -Policy::kLargestStep), Policy::kLargestStep);
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 
+#include "arrays/least_eigenvalue.hpp"
 #include "rows/lane_rows.hpp"
 #include "arm/moving_joints.hpp"
 #include "arm/pose_error.hpp"
@@ -26,25 +27,17 @@ template <class Arm> struct SingularValue {
     if constexpr (Arm::kRank >= kRank) {
       return below(q, bound);
     } else if constexpr (Arm::kWholePose || Arm::kRank < kEquations - Arm::Columns::kRelations) {
-      constexpr bool by_rows = kEquations == kRank;
       const PoseError<Arm> at(q, HeldAim<Arm>::own(q));
-      Lanes<1> A[kRank][kRank];
-      for (int a = 0; a < kRank; ++a)
-        for (int b = 0; b < kRank; ++b) {
-          A[a][b] = spread<1>(0.0);
-          for (int k = 0; k < (by_rows ? kMoving : kEquations); ++k)
-            A[a][b] = A[a][b] + (by_rows ? at.slope[a][kJoints[k]] * at.slope[b][kJoints[k]]
-                                         : at.slope[k][kJoints[a]] * at.slope[k][kJoints[b]]);
-        }
+      Lanes<1> V[kEquations][kMoving], A[kRank][kRank];
+      for (int e = 0; e < kEquations; ++e)
+        for (int k = 0; k < kMoving; ++k) V[e][k] = spread<1>(at.slope[e][kJoints[k]]);
+      take_products(V, A);
       return eigenvalue<kRank - Arm::kRank>(A).v < bound * bound;
     } else {
       double slope[kEquations][Arm::kDof], A[kEquations][kEquations];
       const Frame T = of_all_joints(q, slope);
-      for (int a = 0; a < kEquations; ++a)
-        for (int b = 0; b < kEquations; ++b) {
-          A[a][b] = a == b ? -bound * bound : 0.0;
-          for (int j = 0; j < Arm::kDof; ++j) A[a][b] += slope[a][j] * slope[b][j];
-        }
+      take_products(slope, A);
+      shift_diagonal(-bound * bound, A);
       Arm::Task::fill(T, 1.0, A);
       factor(A);
       return !definite(A);
@@ -94,18 +87,14 @@ template <class Arm> struct SingularValue {
   }
 
   template <class X> static auto above(const X (&slope)[kEquations][Arm::kDof], double bound) noexcept {
-    X A[kRank][kRank];
-    for (int a = 0; a < kRank; ++a)
-      for (int b = 0; b <= a; ++b) {
-        if constexpr (kMoving < kEquations) {
-          A[a][b] = slope[0][kJoints[a]] * slope[0][kJoints[b]];
-          for (int e = 1; e < kEquations; ++e) A[a][b] = A[a][b] + slope[e][kJoints[a]] * slope[e][kJoints[b]];
-        } else {
-          A[a][b] = slope[a][kJoints[0]] * slope[b][kJoints[0]];
-          for (int k = 1; k < kMoving; ++k) A[a][b] = A[a][b] + slope[a][kJoints[k]] * slope[b][kJoints[k]];
-        }
-        if (a == b) A[a][b] = A[a][b] - bound * bound;
-      }
+    X V[kEquations][kMoving], A[kRank][kRank];
+    kJoints.columns(slope, V);
+    if constexpr (kMoving < kEquations) {
+      gram_of_columns(V, A);
+    } else {
+      gram_of_rows(V, A);
+    }
+    shift_diagonal(-bound * bound, A);
     factor(A);
     return definite(A);
   }

@@ -175,24 +175,15 @@ template <class Arm> struct NearestRow {
 
   // One step, in which joints at a limit that it would pass stay; what linear equations have it gain.
   static double step(const Chords& at, bool limits, double damping, double* q) noexcept {
-    double A[Arm::kDof][Arm::kDof], x[Arm::kDof], low[Arm::kDof], high[Arm::kDof];
+    double V[Chords::kCount][Arm::kDof], push[Arm::kDof], x[Arm::kDof], low[Arm::kDof], high[Arm::kDof], gain = 0.0;
     bool stuck[Arm::kDof];
+    transposed_times(at.slope, at.error, push);
     for (int j = 0; j < Arm::kDof; ++j) {
       bounds(j, limits, low + j, high + j);
-      x[j] = 0.0;
-      for (int e = 0; e < Chords::kCount; ++e) x[j] += at.slope[e][j] * at.error[e];
-      stuck[j] = Arm::kHeld[j] || (q[j] <= low[j] && x[j] < 0.0) || (q[j] >= high[j] && x[j] > 0.0);
-      if (stuck[j]) x[j] = 0.0;
+      stuck[j] = Arm::kHeld[j] || (q[j] <= low[j] && push[j] < 0.0) || (q[j] >= high[j] && push[j] > 0.0);
+      for (int e = 0; e < Chords::kCount; ++e) V[e][j] = stuck[j] ? 0.0 : at.slope[e][j];
     }
-    for (int i = 0; i < Arm::kDof; ++i)
-      for (int j = 0; j <= i; ++j) {
-        A[i][j] = i == j ? damping : 0.0;
-        for (int e = 0; e < Chords::kCount && !stuck[i] && !stuck[j]; ++e) A[i][j] += at.slope[e][i] * at.slope[e][j];
-      }
-    double push[Arm::kDof], gain = 0.0;
-    std::copy_n(x, Arm::kDof, push);
-    factor(A);
-    substitute(A, x);
+    least_squares(V, at.error, damping, x);
     for (int j = 0; j < Arm::kDof; ++j) {
       gain += push[j] * x[j];
       if (!stuck[j]) q[j] = std::clamp(q[j] + std::clamp(x[j], -kLongest, kLongest), low[j], high[j]);

@@ -129,13 +129,9 @@ template <class Arm, class Solver> struct PathStep {
     constexpr int n = PoseError<AllMoving<Arm>>::kCount;
     const double worst = here.largest();
     double N[n][n];
-    for (auto& row : here.slope)
-      for (int j = 0; j < kDof; ++j) row[j] = stopped[j] ? 0.0 : row[j];
-    for (int a = 0; a < n; ++a)
-      for (int b = 0; b <= a; ++b) {
-        N[a][b] = a == b ? damping : 0.0;
-        for (int j = 0; j < kDof; ++j) N[a][b] += here.slope[a][j] * here.slope[b][j];
-      }
+    here.hold(stopped);
+    gram_of_rows(here.slope, N);
+    shift_diagonal(damping, N);
     factor(N);
     substitute(N, here.error);
     for (int j = 0; j < kDof; ++j) {
