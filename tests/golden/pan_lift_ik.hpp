@@ -583,6 +583,22 @@ inline void least_squares(const X (&V)[Rows][Columns], const X (&e)[Rows], const
   substitute(A, x);
 }
 
+template <int N> inline double make_unit(double (&v)[N]) noexcept {
+  double square = 0.0;
+  for (const double x : v) square += x * x;
+  const double inverse = 1.0 / std::sqrt(square);
+  for (double& x : v) x *= inverse;
+  return inverse;
+}
+
+template <int N> inline void inverse_iteration(const double (&A)[N][N], double (&x)[N]) noexcept {
+  for (int i = 0; i < 2; ++i) {
+    substitute(A, x);
+    substitute(A, x);
+    make_unit(x);
+  }
+}
+
 // --- motion chain --------------------------------------------------------------------------------
 struct Motion {
   int joint;
@@ -1285,47 +1301,70 @@ template <class Arm> struct SingularValue {
   }
 };
 
+// --- lyapunov schmidt ----------------------------------------------------------------------------
+template <int Rows, int Columns, int K> struct StillSplit {
+  double V[Rows][Columns], A[Columns][Columns], flow[K][Rows];
+
+  StillSplit(const double (&slope)[Rows][Columns], const double (*still)[Columns], double shift) noexcept {
+    for (int e = 0; e < Rows; ++e) {
+      for (int i = 0; i < K; ++i) {
+        flow[i][e] = 0.0;
+        for (int k = 0; k < Columns; ++k) flow[i][e] += slope[e][k] * still[i][k];
+      }
+      for (int k = 0; k < Columns; ++k) {
+        V[e][k] = slope[e][k];
+        for (int i = 0; i < K; ++i) V[e][k] -= flow[i][e] * still[i][k];
+      }
+    }
+    gram_of_columns(V, A);
+    for (int a = 0; a < Columns; ++a)
+      for (int b = 0; b <= a; ++b)
+        for (int i = 0; i < K; ++i) A[a][b] += still[i][a] * still[i][b];
+    shift_diagonal(shift, A);
+    factor(A);
+  }
+};
+
+template <int Rows, int Columns> struct LeftAcross {
+  double rest[Rows][4], going[Columns][4];
+
+  template <int K>
+  LeftAcross(const StillSplit<Rows, Columns, K>& others, const double* a, const double* b, const double* c) noexcept {
+    Lanes<4> z[Rows], y[Columns];
+    for (int e = 0; e < Rows; ++e) {
+      const double columns[4] = {a[e], b[e], c[e], 0.0};
+      z[e] = load<4>(columns);
+    }
+    transposed_times(others.V, z, y);
+    substitute(others.A, y);
+    for (int k = 0; k < Columns; ++k) store(y[k], going[k]);
+    for (int e = 0; e < Rows; ++e) {
+      for (int k = 0; k < Columns; ++k) z[e] = z[e] - others.V[e][k] * y[k];
+      store(z[e], rest[e]);
+    }
+  }
+
+  double first(double (&across)[Columns]) const noexcept {
+    double farthest = 0.0;
+    for (int k = 0; k < Columns; ++k) {
+      across[k] = going[k][0];
+      farthest = std::max(farthest, std::abs(across[k]));
+    }
+    return farthest;
+  }
+};
+
 // --- fold pair -----------------------------------------------------------------------------------
 template <class Arm> struct FoldPair {
   static constexpr MovingJoints<Arm> kJoints{};
   static constexpr int kMoving = MovingJoints<Arm>::kCount, kEquations = PoseError<Arm>::kCount;
   using Vector = double[kMoving];
+  using Taken = LeftAcross<kEquations, kMoving>;
 
   HeldAim<Arm> aim;
   Vector still;             // unit direction in which the pose moves least
   double out[kEquations];  // unit direction of the error in which no other moves it
   double moved[kEquations][kMoving];  // what the others do to it where it was corrected last
-
-  struct Taken {
-    double rest[kEquations][4], going[kMoving][4];
-
-    template <class Across> Taken(const Across& others, const double* a, const double* b, const double* c) noexcept {
-      Lanes<4> z[kEquations], y[kMoving];
-      for (int e = 0; e < kEquations; ++e) {
-        const double columns[4] = {a[e], b[e], c[e], 0.0};
-        z[e] = load<4>(columns);
-      }
-      for (int k = 0; k < kMoving; ++k) {
-        y[k] = others.V[0][k] * z[0];
-        for (int e = 1; e < kEquations; ++e) y[k] = y[k] + others.V[e][k] * z[e];
-      }
-      substitute(others.A, y);
-      for (int k = 0; k < kMoving; ++k) store(y[k], going[k]);
-      for (int e = 0; e < kEquations; ++e) {
-        for (int k = 0; k < kMoving; ++k) z[e] = z[e] - others.V[e][k] * y[k];
-        store(z[e], rest[e]);
-      }
-    }
-
-    double first(Vector& across) const noexcept {
-      double farthest = 0.0;
-      for (int k = 0; k < kMoving; ++k) {
-        across[k] = going[k][0];
-        farthest = std::max(farthest, std::abs(across[k]));
-      }
-      return farthest;
-    }
-  };
 
   explicit FoldPair(const HeldAim<Arm>& goal) noexcept : aim(goal) {
     for (int k = 0; k < kMoving; ++k) still[k] = 1.0 + 0.1 * k;
@@ -1368,9 +1407,9 @@ template <class Arm> struct FoldPair {
   double correct(double* q, bool anew, double& left, double& slope, Vector& across) noexcept {
     const PoseError<Arm> at(q, aim);
     if (anew) find_still(at);
-    const Others others(still, at);
+    const auto others = split<1>(at, &still);
     std::copy_n(&others.V[0][0], kEquations * kMoving, &moved[0][0]);
-    const Taken taken(others, at.error, out, others.flow);
+    const Taken taken(others, at.error, out, others.flow[0]);
     double remains = 0.0;
     for (int e = 0; e < kEquations; ++e) {
       out[e] = taken.rest[e][1];
@@ -1407,20 +1446,21 @@ template <class Arm> struct FoldPair {
   }
 
   static void factor_normal(const PoseError<Arm>& at, double (&N)[kMoving][kMoving], const double* stiff = nullptr) noexcept {
-    for (int a = 0; a < kMoving; ++a)
-      for (int b = 0; b <= a; ++b) {
-        N[a][b] = (stiff ? stiff[a] * stiff[b] : 0.0) + (a == b ? Arm::Policy::kLeastDamping : 0.0);
-        for (int e = 0; e < kEquations; ++e) N[a][b] += at.slope[e][kJoints[a]] * at.slope[e][kJoints[b]];
-      }
+    double slope[kEquations][kMoving];
+    kJoints.columns(at.slope, slope);
+    gram_of_columns(slope, N);
+    for (int a = 0; a < kMoving && stiff; ++a)
+      for (int b = 0; b <= a; ++b) N[a][b] += stiff[a] * stiff[b];
+    shift_diagonal(Arm::Policy::kLeastDamping, N);
     factor(N);
   }
 
-  static double make_unit(Vector& v) noexcept {
-    double square = 0.0;
-    for (const double x : v) square += x * x;
-    const double inverse = 1.0 / std::sqrt(square);
-    for (double& x : v) x *= inverse;
-    return inverse;
+  template <int K>
+  static StillSplit<kEquations, kMoving, K> split(const PoseError<Arm>& at, const Vector* along,
+                                                  double shift = Arm::Policy::kLeastDamping) noexcept {
+    double slope[kEquations][kMoving];
+    kJoints.columns(at.slope, slope);
+    return {slope, along, shift};
   }
 
   static double flow_of(const PoseError<Arm>& at, int e, const Vector& along) noexcept {
@@ -1442,31 +1482,10 @@ template <class Arm> struct FoldPair {
     double length, across, apart, least;
   };
 
-  struct Others {
-    double V[kEquations][kMoving], A[kMoving][kMoving], flow[kEquations];
-
-    Others(const Vector& along, const PoseError<Arm>& at, double shift = Arm::Policy::kLeastDamping) noexcept {
-      for (int e = 0; e < kEquations; ++e) {
-        flow[e] = flow_of(at, e, along);
-        for (int k = 0; k < kMoving; ++k) V[e][k] = at.slope[e][kJoints[k]] - flow[e] * along[k];
-      }
-      for (int a = 0; a < kMoving; ++a)
-        for (int b = 0; b <= a; ++b) {
-          A[a][b] = along[a] * along[b] + (a == b ? shift : 0.0);
-          for (int e = 0; e < kEquations; ++e) A[a][b] += V[e][a] * V[e][b];
-        }
-      factor(A);
-    }
-  };
-
   void find_still(const PoseError<Arm>& at) noexcept {
     double N[kMoving][kMoving];
     factor_normal(at, N);
-    for (int i = 0; i < 2; ++i) {
-      substitute(N, still);
-      substitute(N, still);
-      make_unit(still);
-    }
+    inverse_iteration(N, still);
   }
 
   double turn(const Taken& taken) noexcept {
@@ -1477,7 +1496,7 @@ template <class Arm> struct FoldPair {
   Taken reduced(const double* q, bool anew) noexcept {
     const PoseError<Arm> at(q, aim);
     if (anew) find_still(at);
-    const Others others(still, at);
+    const auto others = split<1>(at, &still);
     double bend[kEquations], there[Arm::kDof];
     std::copy_n(q, Arm::kDof, there);
     for (int k = 0; k < kMoving; ++k) there[kJoints[k]] += kAlong * still[k];
@@ -1487,7 +1506,7 @@ template <class Arm> struct FoldPair {
       for (int k = 0; k < kMoving; ++k)
         bend[e] += (beyond.slope[e][kJoints[k]] - at.slope[e][kJoints[k]]) * still[k] / kAlong;
     }
-    return Taken(others, at.error, bend, others.flow);
+    return Taken(others, at.error, bend, others.flow[0]);
   }
 
   static double sense_of(const Taken& taken, double (&before)[kEquations]) noexcept {
@@ -1911,13 +1930,10 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
   void find_across(const Crossing& part, Sample& s) const noexcept {
     double N[Fold::kMoving][Fold::kMoving], along[Fold::kMoving];
     way_to(part.from, part.to.q, along);
-    Fold::make_unit(along);
+    make_unit(along);
     Fold::factor_normal(PoseError<Arm>(s.q, Curve::fold.aim), N, along);
     for (int k = 0; k < Fold::kMoving; ++k) s.still[k] = 1.0 + 0.1 * k;
-    for (int i = 0; i < 4; ++i) {
-      substitute(N, s.still);
-      Fold::make_unit(s.still);
-    }
+    inverse_iteration(N, s.still);
     for (double& x : s.out) x *= 0.1;  // of no sense yet
   }
 

@@ -148,4 +148,22 @@ inline void least_squares(const X (&V)[Rows][Columns], const X (&e)[Rows], const
   substitute(A, x);
 }
 
+// Makes a vector a unit; the inverse of how long it was.
+template <int N> inline double make_unit(double (&v)[N]) noexcept {
+  double square = 0.0;
+  for (const double x : v) square += x * x;
+  const double inverse = 1.0 / std::sqrt(square);
+  for (double& x : v) x *= inverse;
+  return inverse;
+}
+
+// The unit direction that a matrix shrinks most, from its factors: four steps from x.
+template <int N> inline void inverse_iteration(const double (&A)[N][N], double (&x)[N]) noexcept {
+  for (int i = 0; i < 2; ++i) {
+    substitute(A, x);
+    substitute(A, x);
+    make_unit(x);
+  }
+}
+
 }  // namespace ikgen_runtime

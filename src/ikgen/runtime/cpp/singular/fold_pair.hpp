@@ -5,8 +5,8 @@
 #include "arm/moving_joints.hpp"
 #include "arm/pose_error.hpp"
 #include "arrays/constants.hpp"
-#include "arrays/lanes.hpp"
 #include "arrays/small_matrix.hpp"
+#include "newton/lyapunov_schmidt.hpp"
 
 namespace ikgen_runtime {
 
@@ -15,45 +15,12 @@ template <class Arm> struct FoldPair {
   static constexpr MovingJoints<Arm> kJoints{};
   static constexpr int kMoving = MovingJoints<Arm>::kCount, kEquations = PoseError<Arm>::kCount;
   using Vector = double[kMoving];
+  using Taken = LeftAcross<kEquations, kMoving>;
 
   HeldAim<Arm> aim;
   Vector still;             // unit direction in which the pose moves least
   double out[kEquations];  // unit direction of the error in which no other moves it
   double moved[kEquations][kMoving];  // what the others do to it where it was corrected last
-
-  // What directions across some leave of three errors, a column each, and how they go.
-  struct Taken {
-    double rest[kEquations][4], going[kMoving][4];
-
-    // others: their V, which moves the pose, and the factors A of its normal equations.
-    template <class Across> Taken(const Across& others, const double* a, const double* b, const double* c) noexcept {
-      Lanes<4> z[kEquations], y[kMoving];
-      for (int e = 0; e < kEquations; ++e) {
-        const double columns[4] = {a[e], b[e], c[e], 0.0};
-        z[e] = load<4>(columns);
-      }
-      for (int k = 0; k < kMoving; ++k) {
-        y[k] = others.V[0][k] * z[0];
-        for (int e = 1; e < kEquations; ++e) y[k] = y[k] + others.V[e][k] * z[e];
-      }
-      substitute(others.A, y);
-      for (int k = 0; k < kMoving; ++k) store(y[k], going[k]);
-      for (int e = 0; e < kEquations; ++e) {
-        for (int k = 0; k < kMoving; ++k) z[e] = z[e] - others.V[e][k] * y[k];
-        store(z[e], rest[e]);
-      }
-    }
-
-    // How they go for the first, and how far the fastest joint does.
-    double first(Vector& across) const noexcept {
-      double farthest = 0.0;
-      for (int k = 0; k < kMoving; ++k) {
-        across[k] = going[k][0];
-        farthest = std::max(farthest, std::abs(across[k]));
-      }
-      return farthest;
-    }
-  };
 
   explicit FoldPair(const HeldAim<Arm>& goal) noexcept : aim(goal) {
     for (int k = 0; k < kMoving; ++k) still[k] = 1.0 + 0.1 * k;
@@ -104,9 +71,9 @@ template <class Arm> struct FoldPair {
   double correct(double* q, bool anew, double& left, double& slope, Vector& across) noexcept {
     const PoseError<Arm> at(q, aim);
     if (anew) find_still(at);
-    const Others others(still, at);
+    const auto others = split<1>(at, &still);
     std::copy_n(&others.V[0][0], kEquations * kMoving, &moved[0][0]);
-    const Taken taken(others, at.error, out, others.flow);
+    const Taken taken(others, at.error, out, others.flow[0]);
     double remains = 0.0;
     for (int e = 0; e < kEquations; ++e) {
       out[e] = taken.rest[e][1];
@@ -139,7 +106,7 @@ template <class Arm> struct FoldPair {
 
   // Whether all other directions move the pose by more than a bound (below 1) at q, where an approach ended.
   bool others_above(double bound, const double* q) const noexcept {
-    return definite(Others(still, PoseError<Arm>(q, aim), -bound * bound).A);
+    return definite(split<1>(PoseError<Arm>(q, aim), &still, -bound * bound).A);
   }
 
   // Whether what the others did to the pose before the last correction, with `out` for the still one, keeps orientation; of
@@ -153,21 +120,22 @@ template <class Arm> struct FoldPair {
 
   // The factors of the normal equations of a pose's derivatives, with a direction that is stiff, or none.
   static void factor_normal(const PoseError<Arm>& at, double (&N)[kMoving][kMoving], const double* stiff = nullptr) noexcept {
-    for (int a = 0; a < kMoving; ++a)
-      for (int b = 0; b <= a; ++b) {
-        N[a][b] = (stiff ? stiff[a] * stiff[b] : 0.0) + (a == b ? Arm::Policy::kLeastDamping : 0.0);
-        for (int e = 0; e < kEquations; ++e) N[a][b] += at.slope[e][kJoints[a]] * at.slope[e][kJoints[b]];
-      }
+    double slope[kEquations][kMoving];
+    kJoints.columns(at.slope, slope);
+    gram_of_columns(slope, N);
+    for (int a = 0; a < kMoving && stiff; ++a)
+      for (int b = 0; b <= a; ++b) N[a][b] += stiff[a] * stiff[b];
+    shift_diagonal(Arm::Policy::kLeastDamping, N);
     factor(N);
   }
 
-  // The inverse of how long it was.
-  static double make_unit(Vector& v) noexcept {
-    double square = 0.0;
-    for (const double x : v) square += x * x;
-    const double inverse = 1.0 / std::sqrt(square);
-    for (double& x : v) x *= inverse;
-    return inverse;
+  // Those derivatives by K still directions, and by the others.
+  template <int K>
+  static StillSplit<kEquations, kMoving, K> split(const PoseError<Arm>& at, const Vector* along,
+                                                  double shift = Arm::Policy::kLeastDamping) noexcept {
+    double slope[kEquations][kMoving];
+    kJoints.columns(at.slope, slope);
+    return {slope, along, shift};
   }
 
   // How a direction moves an entry of the pose's error.
@@ -193,33 +161,11 @@ template <class Arm> struct FoldPair {
     double length, across, apart, least;
   };
 
-  // The directions across the still one, and what that does to the pose.
-  struct Others {
-    double V[kEquations][kMoving], A[kMoving][kMoving], flow[kEquations];
-
-    Others(const Vector& along, const PoseError<Arm>& at, double shift = Arm::Policy::kLeastDamping) noexcept {
-      for (int e = 0; e < kEquations; ++e) {
-        flow[e] = flow_of(at, e, along);
-        for (int k = 0; k < kMoving; ++k) V[e][k] = at.slope[e][kJoints[k]] - flow[e] * along[k];
-      }
-      for (int a = 0; a < kMoving; ++a)
-        for (int b = 0; b <= a; ++b) {
-          A[a][b] = along[a] * along[b] + (a == b ? shift : 0.0);
-          for (int e = 0; e < kEquations; ++e) A[a][b] += V[e][a] * V[e][b];
-        }
-      factor(A);
-    }
-  };
-
   // By four steps of inverse iteration from what it was, which keeps its sense.
   void find_still(const PoseError<Arm>& at) noexcept {
     double N[kMoving][kMoving];
     factor_normal(at, N);
-    for (int i = 0; i < 2; ++i) {
-      substitute(N, still);
-      substitute(N, still);
-      make_unit(still);
-    }
+    inverse_iteration(N, still);
   }
 
   // Turns the still direction to where less moves the pose, as a step of inverse iteration does: the others make good of
@@ -233,7 +179,7 @@ template <class Arm> struct FoldPair {
   Taken reduced(const double* q, bool anew) noexcept {
     const PoseError<Arm> at(q, aim);
     if (anew) find_still(at);
-    const Others others(still, at);
+    const auto others = split<1>(at, &still);
     double bend[kEquations], there[Arm::kDof];
     std::copy_n(q, Arm::kDof, there);
     for (int k = 0; k < kMoving; ++k) there[kJoints[k]] += kAlong * still[k];
@@ -243,7 +189,7 @@ template <class Arm> struct FoldPair {
       for (int k = 0; k < kMoving; ++k)
         bend[e] += (beyond.slope[e][kJoints[k]] - at.slope[e][kJoints[k]]) * still[k] / kAlong;
     }
-    return Taken(others, at.error, bend, others.flow);
+    return Taken(others, at.error, bend, others.flow[0]);
   }
 
   // How what is left bends, in the sense of the steps before, takes the place of `before`. -1 where it has the other sense

@@ -134,13 +134,10 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
   void find_across(const Crossing& part, Sample& s) const noexcept {
     double N[Fold::kMoving][Fold::kMoving], along[Fold::kMoving];
     way_to(part.from, part.to.q, along);
-    Fold::make_unit(along);
+    make_unit(along);
     Fold::factor_normal(PoseError<Arm>(s.q, Curve::fold.aim), N, along);
     for (int k = 0; k < Fold::kMoving; ++k) s.still[k] = 1.0 + 0.1 * k;
-    for (int i = 0; i < 4; ++i) {
-      substitute(N, s.still);
-      Fold::make_unit(s.still);
-    }
+    inverse_iteration(N, s.still);
     for (double& x : s.out) x *= 0.1;  // of no sense yet
   }
 

@@ -65,25 +65,6 @@ template <class Arm> struct NearSurface {
     bool on;
   };
 
-  // The directions across two, and what these do to the pose.
-  struct Others {
-    double V[kEquations][kMoving], A[kMoving][kMoving], flow[2][kEquations];
-
-    Others(const Vector (&still)[2], const PoseError<Arm>& at) noexcept {
-      for (int e = 0; e < kEquations; ++e) {
-        for (int i = 0; i < 2; ++i) flow[i][e] = Fold::flow_of(at, e, still[i]);
-        for (int k = 0; k < kMoving; ++k)
-          V[e][k] = at.slope[e][kJoints[k]] - flow[0][e] * still[0][k] - flow[1][e] * still[1][k];
-      }
-      for (int a = 0; a < kMoving; ++a)
-        for (int b = 0; b <= a; ++b) {
-          A[a][b] = still[0][a] * still[0][b] + still[1][a] * still[1][b] + (a == b ? Policy::kLeastDamping : 0.0);
-          for (int e = 0; e < kEquations; ++e) A[a][b] += V[e][a] * V[e][b];
-        }
-      factor(A);
-    }
-  };
-
   static double dot(const Vector& a, const Vector& b) noexcept {
     double sum = 0.0;
     for (int k = 0; k < kMoving; ++k) sum += a[k] * b[k];
@@ -95,8 +76,7 @@ template <class Arm> struct NearSurface {
     for (int i = 0; i < 2; ++i) {
       const double along = i == 0 ? 0.0 : dot(still[0], still[1]);
       for (int k = 0; k < kMoving && i > 0; ++k) still[1][k] -= along * still[0][k];
-      const double inverse = 1.0 / std::sqrt(dot(still[i], still[i]));
-      for (double& x : still[i]) x *= inverse;
+      make_unit(still[i]);
     }
   }
 
@@ -145,7 +125,7 @@ template <class Arm> struct NearSurface {
     s.on = false;
     for (int i = 0; i < kCorrections && !s.on; ++i) {
       const PoseError<Arm> at(s.q, aim);
-      const Others others(s.still, at);
+      const auto others = Fold::template split<2>(at, s.still);
       const typename Fold::Taken taken(others, at.error, others.flow[0], others.flow[1]);
       double farthest = 0.0;
       for (int k = 0; k < kMoving; ++k) {
