@@ -915,28 +915,36 @@ template <class Policy> struct RefinementCourse {
   const RefineStage& stage() const noexcept { return Policy::kRefinement[at]; }
 };
 
+// --- damped newton -------------------------------------------------------------------------------
+template <class Policy, int N, class At> inline double damped_newton(double* q, const At& at) noexcept {
+  double trial[N];
+  std::copy_n(q, N, trial);
+  for (RefinementCourse<Policy> course;;) {
+    const auto here = at(trial);
+    const double worst = here.largest();
+    if (course.takes(worst)) std::copy_n(trial, N, q);
+    if (course.starts_again()) {
+      if (course.done) return course.best;
+      std::copy_n(q, N, trial);
+    } else {
+      double step[N];
+      damped_step<Policy>(here.slope, here.error, worst, step);
+      for (int j = 0; j < N; ++j) trial[j] += step[j];
+    }
+  }
+}
+
 // --- newton refinement ---------------------------------------------------------------------------
 template <class Arm> struct NewtonRefinement {
   using Aim = HeldAim<Arm>;
   using Policy = typename Arm::Policy;
 
   static double error_after(double* q, const Aim& aim, const bool* still = nullptr) noexcept {
-    double trial[Arm::kDof];
-    std::copy_n(q, Arm::kDof, trial);
-    for (RefinementCourse<Policy> course;;) {
+    return damped_newton<Policy, Arm::kDof>(q, [&](const double* trial) {
       PoseError<Arm> at(trial, aim);
       if (still != nullptr) at.hold(still);
-      const double worst = at.largest();
-      if (course.takes(worst)) std::copy_n(trial, Arm::kDof, q);
-      if (course.starts_again()) {
-        if (course.done) return course.best;
-        std::copy_n(q, Arm::kDof, trial);
-      } else {
-        double step[Arm::kDof];
-        damped_step<Policy>(at.slope, at.error, worst, step);
-        for (int j = 0; j < Arm::kDof; ++j) trial[j] += step[j];
-      }
-    }
+      return at;
+    });
   }
 
   static bool refine(double* q, const Aim& aim) noexcept {

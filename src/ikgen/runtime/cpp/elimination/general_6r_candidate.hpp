@@ -7,6 +7,8 @@
 #include "arrays/small_matrix.hpp"
 #include "elimination/general_6r_equations.hpp"
 #include "elimination/general_6r_solutions.hpp"
+#include "newton/damped_newton.hpp"
+#include "newton/lyapunov_schmidt.hpp"
 
 namespace ikgen_runtime {
 
@@ -68,10 +70,10 @@ inline std::array<double, 6> complete(const Loop& loop, const Equations& eq, dou
 
 using Vector = std::array<double, 6>;
 
+// Error of a configuration, lengths over the arm's, its slope, and the largest error of an entry of the pose.
 struct State {
-  Vector e;
-  Mat<6, 6> J;
-  double r, square;
+  double error[6], slope[6][6] = {}, worst = 0.0;
+  double largest() const noexcept { return worst; }
 };
 
 // A joint that moves an axis of a chain, and the axis' value by the joint's: ratio times it, and shift.
@@ -84,7 +86,7 @@ constexpr Axis axis_of(const Chain&, Index i) noexcept { return {i, 1.0, 0.0}; }
 
 // F: a Chain, or another of frames with axis_of.
 template <class Frames>
-inline State residual(const Frames& F, const Frame& T, const Vector& q, const Turning& turning) noexcept {
+inline State residual(const Frames& F, const Frame& T, const double* q, const Turning& turning) noexcept {
   constexpr Index axes = sizeof(Frames) / sizeof(Frame) - 1;
   State out;
   Frame X = F[0];
@@ -98,82 +100,40 @@ inline State residual(const Frames& F, const Frame& T, const Vector& q, const Tu
     X = compose(moved(X, turning[axis.joint], axis.ratio * q[axis.joint] + axis.shift), F[i + 1]);
   }
   Mat<3, 3> S{};
-  out.r = out.square = 0.0;
   for (Index i = 0; i < 3; ++i) {
     for (Index j = 0; j < 3; ++j) {
       for (Index k = 0; k < 3; ++k) S(i, j) += T.R[i][k] * X.R[j][k];
-      out.r = std::max(out.r, std::abs(T.R[i][j] - X.R[i][j]));
+      out.worst = std::max(out.worst, std::abs(T.R[i][j] - X.R[i][j]));
     }
-    out.e[i] = T.p[i] - X.p[i];
-    out.r = std::max(out.r, std::abs(out.e[i]));
+    out.error[i] = T.p[i] - X.p[i];
+    out.worst = std::max(out.worst, std::abs(out.error[i]));
   }
-  out.J = {};
   for (Index k = 0; k < 3; ++k) {
     const Index m = (k + 1) % 3, n = (k + 2) % 3;
-    out.e[3 + k] = 0.5 * (S(n, m) - S(m, n));
+    out.error[3 + k] = 0.5 * (S(n, m) - S(m, n));
     for (Index i = 0; i < axes; ++i) {
       const Axis axis = axis_of(F, i);
       const bool turns = turning[axis.joint];
       const double arm = z(i, m) * (X.p[n] - p(i, n)) - z(i, n) * (X.p[m] - p(i, m));
-      out.J(k, axis.joint) += axis.ratio * (turns ? arm : z(i, k));
-      if (turns) out.J(3 + k, axis.joint) += axis.ratio * z(i, k);
+      out.slope[k][axis.joint] += axis.ratio * (turns ? arm : z(i, k));
+      if (turns) out.slope[3 + k][axis.joint] += axis.ratio * z(i, k);
     }
   }
-  for (const double x : out.e) out.square += x * x;
   return out;
 }
 
-// (J^T J + mu)^-1 x
-inline Vector inverse_normal(const State& at, const Vector& x, double mu) noexcept {
-  double A[6][6], solved[6];
-  for (Index i = 0; i < 6; ++i) {
-    solved[i] = x[i];
-    for (Index j = 0; j <= i; ++j) {
-      A[i][j] = i == j ? mu : 0.0;
-      for (Index k = 0; k < 6; ++k) A[i][j] += at.J(k, i) * at.J(k, j);
-    }
-  }
-  factor(A, 1e-18);
-  substitute(A, solved);
-  Vector out;
-  std::copy_n(solved, 6, out.begin());
-  return out;
-}
+// How a candidate is refined, as RefinementCourse and damped_step have it. Where more than two solutions meet steps do less
+// than halve the error: what has come near takes as many as rows need that are to be told apart.
+struct CandidatePolicy {
+  static constexpr int kPatience = 40;
+  static constexpr double kDamping = 1e-3, kLeastDamping = 1e-13, kLargestStep = 0.4, kConverged = 1e-13, kProgress = 0.8;
+  static constexpr RefineStage kRefinement[] = {{3, 0.0, 0.1}, {6, 0.0, 1e-3}, {31, 0.0, 0.0}};
+};
 
-inline Vector damped_step(const State& at, double mu) noexcept {
-  Vector x{};
-  for (Index k = 0; k < 6; ++k)
-    for (Index i = 0; i < 6; ++i) x[i] += at.J(k, i) * at.e[k];
-  return inverse_normal(at, x, mu);
-}
-
-// Damped Newton (Levenberg-Marquardt) on the chain; returns the residual, and in `before` that of the start. Where
-// solutions meet steps halve the error, or do less: what has come near takes as many as rows need that are to be told
-// apart.
+// The residual that damped Newton steps on the chain leave.
 template <class Frames>
-inline double refine_one(const Frames& F, const Frame& T, const Turning& turning, Vector& q, double& before) noexcept {
-  State now = residual(F, T, q, turning);
-  before = now.r;
-  double damp = 1e-3;
-  for (int step = 0; step < 40; ++step) {
-    if (!(now.r > 1e-14 && now.r < (step < 3 ? 1e4 : step < 9 ? 0.1 : 1e-3))) break;
-    const Vector dq = damped_step(now, damp * std::min(now.square, 1.0) + 1e-13);
-    double size = 0.0;
-    for (const double x : dq) size = std::max(size, std::abs(x));
-    if (!(size < 1e300)) break;
-    Vector trial = q;
-    for (Index i = 0; i < 6; ++i) trial[i] += size > 0.4 ? dq[i] * (0.4 / size) : dq[i];
-    const State next = residual(F, T, trial, turning);
-    if (next.square < now.square) {
-      q = trial;
-      now = next;
-      damp = 1e-3;
-    } else {
-      damp *= 1e3;
-      if (now.r < 1e-12 || damp > 1e6) break;
-    }
-  }
-  return now.r;
+inline double refine_one(const Frames& F, const Frame& T, const Turning& turning, Vector& q) noexcept {
+  return damped_newton<CandidatePolicy, 6>(q.data(), [&](const double* at) { return residual(F, T, at, turning); });
 }
 
 inline Solution solution_of(const Turning& turning, const Vector& q) noexcept {
@@ -189,22 +149,20 @@ inline Solution solution_of(const Turning& turning, const Vector& q) noexcept {
 inline constexpr double kExactly = 1e-12;  // error of a row that is right to round-off
 
 struct Still {
-  Vector direction, flow;
+  double direction[6], flow[6];
 };
 
-// The unit direction in which a slope moves the pose least, by inverse iteration, and what it does to it.
+// The unit direction in which a slope moves the pose least, and what it does to it.
 inline Still still_of(const State& at) noexcept {
-  Still out;
-  out.direction = {1.0, -0.7, 0.4, 0.9, -0.3, 0.6};
-  for (int pass = 0; pass < 4; ++pass) {
-    out.direction = inverse_normal(at, out.direction, 1e-18);
-    double square = 0.0;
-    for (const double e : out.direction) square += e * e;
-    for (double& e : out.direction) e /= std::sqrt(square) + 1e-300;
-  }
-  out.flow = {};
+  constexpr double least = 1e-18;
+  Still out = {{1.0, -0.7, 0.4, 0.9, -0.3, 0.6}, {}};
+  double N[6][6];
+  gram_of_columns(at.slope, N);
+  shift_diagonal(least, N);
+  factor(N, least);
+  inverse_iteration(N, out.direction);
   for (Index k = 0; k < 6; ++k)
-    for (Index i = 0; i < 6; ++i) out.flow[k] += at.J(k, i) * out.direction[i];
+    for (Index i = 0; i < 6; ++i) out.flow[k] += at.slope[k][i] * out.direction[i];
   return out;
 }
 
@@ -213,36 +171,26 @@ inline Still still_of(const State& at) noexcept {
 // others leave of the error is taken away, in bounded steps. Returns the residual, and q only where it is round-off.
 template <class Frames>
 [[gnu::cold, gnu::noinline]] inline double refine_along(const Frames& F, const Frame& T, const Turning& turning, Vector& q) noexcept {
-  constexpr double farthest = 0.3, enough = 1e-14;
+  constexpr double farthest = 0.3, enough = 1e-14, shift = 1e-13;
   Vector x = q, best = q;
-  State at = residual(F, T, x, turning);
-  const double given = at.r;
+  State at = residual(F, T, x.data(), turning);
+  const double given = at.worst;
   double least = given;
   for (int step = 0; step < 30 && least > enough; ++step) {
     const Still still = still_of(at);
-    State others = at;
-    for (Index k = 0; k < 6; ++k)
-      for (Index i = 0; i < 6; ++i) others.J(k, i) -= still.flow[k] * still.direction[i];
-    const Vector across = damped_step(others, 1e-13);
-    others.e = still.flow;
-    const Vector back = damped_step(others, 1e-13);
+    const StillSplit<6, 6, 1> others(at.slope, &still.direction, shift);
+    const LeftAcross<6, 6> taken(others, at.error, still.flow, still.flow);
     double left = 0.0, slope = 0.0;
-    for (Index k = 0; k < 6; ++k) {
-      double rest = at.e[k], flow = still.flow[k];
-      for (Index i = 0; i < 6; ++i) {
-        const double V = at.J(k, i) - still.flow[k] * still.direction[i];
-        rest -= V * across[i];
-        flow -= V * back[i];
-      }
-      left += rest * flow;
-      slope += flow * flow;
+    for (const auto& row : taken.rest) {
+      left += row[0] * row[1];
+      slope += row[1] * row[1];
     }
     const double along = slope > 0.0 ? std::min(std::max(left / slope, -farthest), farthest) : 0.0;
     for (Index i = 0; i < 6; ++i)
-      x[i] += std::min(std::max(across[i], -farthest), farthest) + along * (still.direction[i] - back[i]);
-    at = residual(F, T, x, turning);
-    if (!(at.r < least)) continue;
-    least = at.r;
+      x[i] += std::min(std::max(taken.going[i][0], -farthest), farthest) + along * (still.direction[i] - taken.going[i][1]);
+    at = residual(F, T, x.data(), turning);
+    if (!(at.worst < least)) continue;
+    least = at.worst;
     best = x;
   }
   if (!(least < kExactly)) return given;

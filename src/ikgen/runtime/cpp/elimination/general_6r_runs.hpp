@@ -22,8 +22,8 @@ inline constexpr double kStalled = 1e-6;  // error where more than two solutions
 template <class Frames>
 inline void add_refined(const Frames& F, const Frame& T, const Turning& turning, Vector q, Spectrum& roots,
                         Solutions& out) noexcept {
-  double before = 0.0, farthest = 0.0;
-  double after = refine_one(F, T, turning, q, before);
+  const double before = residual(F, T, q.data(), turning).worst;
+  double farthest = 0.0, after = refine_one(F, T, turning, q);
   const bool stalls = after >= kVerified && after < kStalled;
   if (after >= kExactly && after < kStalled) after = refine_along(F, T, turning, q);
   for (Index i = 0; i < 6; ++i) farthest = std::max(farthest, turning[i] ? 0.0 : std::abs(q[i]));
@@ -59,10 +59,8 @@ inline Apart count_apart(const Frames& F, const Frame& T, const Turning& turning
   Apart out;
   for (int k = 0; k < first; ++k) {
     const double* row = rows.rows[static_cast<Index>(k)].q;
-    Vector q;
-    std::copy_n(row, 6, q.data());
     double square = 0.0;
-    for (const double e : still_of(residual(F, T, q, turning)).flow) square += e * e;
+    for (const double e : still_of(residual(F, T, row, turning)).flow) square += e * e;
     bool fresh = folds[static_cast<Index>(k)] = square < meets * meets;
     out.meet = out.meet || fresh;
     for (int i = 0; i < k && fresh; ++i)

@@ -225,12 +225,12 @@ template <int D, class Frames, class Of>
   for (int k = 0; k < roots.open; ++k) {
     const Six start = of({spread<kWide>(std::cos(roots.middle[k])), spread<kWide>(std::sin(roots.middle[k]))});
     Vector q;
-    double before = 0.0, sum = 0.0;
+    double sum = 0.0;
     for (Index i = 0; i < 6; ++i) {
       q[i] = std::atan2(lane(start.s[i], 0), lane(start.c[i], 0));
       sum += q[i];
     }
-    if (std::isfinite(sum) && refine_one(F, T, kAllTurn, q, before) < kVerified) keep(solution_of(kAllTurn, q), blurred);
+    if (std::isfinite(sum) && refine_one(F, T, kAllTurn, q) < kVerified) keep(solution_of(kAllTurn, q), blurred);
   }
 }
 

@@ -18,12 +18,10 @@ inline constexpr double kNearlySingular = 1e-3;  // smallest singular value of t
 // Which row goes before others where a continuum gives too many: 0 a regular one, 1 one right to round-off, 2 the rest.
 template <class Frames>
 inline int crowd_class(const Frames& F, const Frame& T, const Turning& turning, const double (&values)[6]) noexcept {
-  Vector q;
-  for (Index i = 0; i < 6; ++i) q[i] = values[i];
-  const State at = residual(F, T, q, turning);
+  const State at = residual(F, T, values, turning);
   double square = 0.0;
   for (const double e : still_of(at).flow) square += e * e;
-  return square >= kNearlySingular * kNearlySingular ? 0 : at.r < kExactly ? 1 : 2;
+  return square >= kNearlySingular * kNearlySingular ? 0 : at.worst < kExactly ? 1 : 2;
 }
 
 // How far apart two rows are, whole turns aside.
