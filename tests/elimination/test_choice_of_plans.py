@@ -40,8 +40,10 @@ def test_of_two_slides_the_second_hidden_angle_is_not_opposite_to_the_first() ->
 
 def test_what_is_enough_more_often_comes_before_what_loses_a_digit_less() -> None:
     hits, rough = np.ones((4, 24), dtype=bool), np.array([1.5, 1.0, 2.5, 2.4])
-    enough = np.array([9.0, 8.0, 22.0, 23.0]) / 24.0
+    enough = np.array([4.0, 3.0, 11.0, 12.0]) / 12.0
     assert ranking(hits, rough, enough) == [2, 3]
+    enough[2] -= 2.0 / 12.0
+    assert ranking(hits, rough, enough)[0] == 3
     hits[2:, 0] = False
     assert ranking(hits, rough, enough)[0] == 1
 
@@ -57,8 +59,8 @@ def test_roots_that_lie_in_pairs_are_left_to_another_hidden_angle() -> None:
     poses = np.array([forward(frames, row) for row in q])
     find = finder(plan.turning)
     alone = [Plan(plan.length, (e,), plan.turning, find) for e in (plan.eliminations[0], (2, 0, 0))]
-    chosen, paired = (run.enough.mean() for run in first_runs(frames, alone, poses))
-    assert chosen > 0.8 > 0.6 > paired
+    chosen, paired = (run.often_enough for run in first_runs(frames, alone, poses))
+    assert chosen > 0.9 > 0.5 > paired
 
 
 def test_only_what_separates_roots_is_kept() -> None:

@@ -82,7 +82,7 @@ def _probe(frames: Array, chain: Chain, q: Array, plans: list[Plan]) -> tuple[Ar
     poses[:, :3, 3] *= plans[0].length
     runs = first_runs(frames, plans, poses)
     rough = np.array([digits_lost(run.before) for run in runs])
-    enough = np.array([run.enough.mean() for run in runs])
+    enough = np.array([run.often_enough for run in runs])
     every = [[*(run.rows[i] for run in runs), row[None]] for i, row in enumerate(q)]
     hits = [distinct_of_runs(rows, _ALL_TURN)[:-1] for rows in every]
     return np.concatenate([np.zeros((len(plans), 0), dtype=bool), *hits], axis=1), rough, enough

@@ -50,7 +50,7 @@ _BLURRED = 1.5e-2  # rad; roots that move further are not worth a resultant
 _SAME = 1e-5
 _FINE = -8.0  # logarithm of errors below which they no longer count
 _ALIKE = 0.3  # digits lost on average, which rounding moves by less than a tenth
-_AS_OFTEN = 0.05  # of poses: one of two dozen
+_AS_OFTEN = 0.2  # of poses: more than rounding decides
 _KEPT = 2
 _SPECIAL_PROBES = 3
 
@@ -223,8 +223,8 @@ def _separate(shifts: Array) -> list[int]:
 @dataclass(frozen=True, slots=True)
 class _Probe:
     """hits (n_e, n) bool: which elimination finds which solution. rough (n_e,): how many digits more than
-    need be its candidates' errors have, on average. enough (n_e,): at what share of poses no other run has
-    to follow. shifts (n_r,) in rad: how far rounding moves the roots of the resultants."""
+    need be its candidates' errors have, on average. enough (n_e,): see `FirstRun.often_enough`. shifts
+    (n_r,) in rad: how far rounding moves the roots of the resultants."""
 
     hits: Array
     rough: Array
@@ -251,7 +251,7 @@ def _probe(frames: Array, every: Sequence[Plan], count: int, rng: np.random.Gene
     poses = forward(frames, q, turning)
     runs = first_runs(frames, every, poses)
     rough = np.array([digits_lost(run.before) for run in runs])
-    enough = np.array([run.enough.mean() for run in runs])
+    enough = np.array([run.often_enough for run in runs])
     unions = [distinct_of_runs([run.rows[i] for run in runs], turning) for i in range(len(poses))]
     shifts = np.ones((len(RESULTANTS), 1))
     if all(turning):

@@ -66,6 +66,12 @@ class FirstRun(NamedTuple):
     before: Array
     enough: Flags
 
+    @property
+    def often_enough(self) -> float:
+        """At what share of the first half of the poses it is enough: the others may be next to
+        singularities, where rounding decides."""
+        return float(self.enough[: (len(self.enough) + 1) // 2].mean())
+
 
 def first_runs(frames: Array, plans: Sequence[Plan], poses: Array) -> list[FirstRun]:
     """The first elimination of each plan at poses (N, 4, 4), lengths over the plan's. The plans are of one
