@@ -9,9 +9,10 @@ from tests.elimination.test_elimination import arm_frames, configurations, dh_fr
 
 from ikgen.elimination.elimination_table import finder
 from ikgen.elimination.loop_frames import forward, hold_joint, typical_length
-from ikgen.elimination.plan import _separate, choose_plan, digits_lost, ranking
+from ikgen.elimination.plan import _separate, choose_plan, ranking
+from ikgen.elimination.probing import digits_lost
 from ikgen.elimination.resultant import root_shifts
-from ikgen.elimination.routine import Plan, first_runs
+from ikgen.elimination.routine import FirstRun, Plan, first_runs
 from ikgen.runtime.python.elimination.general_6r import candidates
 
 Array = NDArray[np.float64]
@@ -61,6 +62,10 @@ def test_roots_that_lie_in_pairs_are_left_to_another_hidden_angle() -> None:
     alone = [Plan(plan.length, (e,), plan.turning, find) for e in (plan.eliminations[0], (2, 0, 0))]
     chosen, paired = (run.often_enough for run in first_runs(frames, alone, poses))
     assert chosen > 0.9 > 0.5 > paired
+
+
+def test_a_run_is_enough_at_none_of_no_poses() -> None:
+    assert FirstRun([], np.zeros(0), np.zeros(0, dtype=bool)).often_enough == 0.0
 
 
 def test_only_what_separates_roots_is_kept() -> None:

@@ -18,13 +18,8 @@ from numpy.typing import NDArray
 
 from ikgen.elimination.crowded_angles import crowded_angles
 from ikgen.elimination.loop_frames import over, typical_length
-from ikgen.elimination.plan import (
-    EliminationPlan,
-    digits_lost,
-    distinct_of_runs,
-    half_hard,
-    ranking,
-)
+from ikgen.elimination.plan import EliminationPlan, half_hard, ranking
+from ikgen.elimination.probing import Probe, distinct_of_runs, joined, probe_of
 from ikgen.elimination.routine import Elimination, Plan, first_runs
 from ikgen.kinematics.rigid import read_only
 from ikgen.model.arrays import Array
@@ -61,10 +56,9 @@ def choose_coupled(frames: Array, motions: tuple[Motion, ...]) -> EliminationPla
         find = (CoupledBothAngle if both else CoupledAngle)(motions, crowded)
         plans = [Plan(length, (e,), _ALL_TURN, find, motions=motions) for e in group]
         parts = [_probe(*known, plans) for known in zip(family, chains, probes, strict=True)]
-        hits = np.concatenate([part[0] for part in parts], axis=1)
-        rough, enough = (np.array([part[k] for part in parts]) for k in (1, 2))
-        order = ranking(hits, rough.max(axis=0), enough.mean(axis=0))
-        recall = float(hits[order[0]].mean()) if hits.size else 0.0
+        every = joined(parts)
+        order = ranking(every.hits, every.rough, every.enough)
+        recall = float(every.hits[order[0]].mean()) if every.hits.size else 0.0
         if best is None or recall > best.recall:
             chosen = tuple(group[k] for k in order)
             best = EliminationPlan(
@@ -75,17 +69,16 @@ def choose_coupled(frames: Array, motions: tuple[Motion, ...]) -> EliminationPla
     return best
 
 
-def _probe(frames: Array, chain: Chain, q: Array, plans: list[Plan]) -> tuple[Array, Array, Array]:
-    """Which plan finds which solution of the poses of configurations q (n, 6), the digits that each
-    loses, and at what share of them it is enough; the chain is the frames' in lengths over the plans'."""
+def _probe(frames: Array, chain: Chain, q: Array, plans: list[Plan]) -> Probe:
+    """What plans find at the poses of configurations q (n, 6); the chain is the frames' in lengths over the
+    plans'. There are no resultants."""
     poses = forward(chain, q)
     poses[:, :3, 3] *= plans[0].length
     runs = first_runs(frames, plans, poses)
-    rough = np.array([digits_lost(run.before) for run in runs])
-    enough = np.array([run.often_enough for run in runs])
     every = [[*(run.rows[i] for run in runs), row[None]] for i, row in enumerate(q)]
     hits = [distinct_of_runs(rows, _ALL_TURN)[:-1] for rows in every]
-    return np.concatenate([np.zeros((len(plans), 0), dtype=bool), *hits], axis=1), rough, enough
+    none = np.zeros((len(plans), 0), dtype=bool)
+    return probe_of(runs, np.concatenate([none, *hits], axis=1), np.zeros(0))
 
 
 _Crowded = tuple[tuple[float, int], ...]

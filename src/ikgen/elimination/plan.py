@@ -24,6 +24,7 @@ from ikgen.elimination.elimination_table import (
 )
 from ikgen.elimination.loop_frames import forward, jacobian, over, typical_length
 from ikgen.elimination.parallel_plans import ParallelPlan, choose_parallel
+from ikgen.elimination.probing import Probe, distinct_of_runs, joined, probe_of
 from ikgen.elimination.resultant import RESULTANTS, Resultant, root_shifts
 from ikgen.elimination.routine import Elimination, Plan, Turning, first_runs
 from ikgen.kinematics.rigid import read_only
@@ -34,8 +35,6 @@ from ikgen.runtime.python.elimination.coupled_loop import coupled_and_others
 __all__ = [
     "EliminationPlan",
     "choose_plan",
-    "digits_lost",
-    "distinct_of_runs",
     "eliminations",
     "half_hard",
     "ranking",
@@ -47,8 +46,6 @@ _ALL: tuple[Elimination, ...] = tuple(
 _REVOLUTE: Turning = (True,) * 6
 _REGULAR = 1e-3
 _BLURRED = 1.5e-2  # rad; roots that move further are not worth a resultant
-_SAME = 1e-5
-_FINE = -8.0  # logarithm of errors below which they no longer count
 _ALIKE = 0.4  # digits lost on average, which rounding moves by less than a tenth
 _AS_OFTEN = 0.2  # of poses: more than rounding decides
 _KEPT = 2
@@ -166,12 +163,12 @@ def _chosen(
     rng, ways = np.random.default_rng(0), eliminations(turning, both=both)
     each = max(probes // len(family), 2)
 
-    def probed(member: Array, count: int) -> _Probe:
+    def probed(member: Array, count: int) -> Probe:
         length, find = typical_length(member, turning), finder(turning, both=both)
         return _probe(member, [Plan(length, (e,), turning, find) for e in ways], count, rng)
 
-    plain = _joined([probed(member, each) for member in family])
-    every = _joined([plain, *(probed(member, _SPECIAL_PROBES) for member in special)])
+    plain = joined([probed(member, each) for member in family])
+    every = joined([plain, *(probed(member, _SPECIAL_PROBES) for member in special)])
     opposite = 2 if turning.count(False) == 2 else 0
     order = ranking(every.hits, every.rough, plain.enough, opposite=opposite)
     everywhere, elsewhere = _separate(every.shifts), _separate(plain.shifts)
@@ -220,63 +217,21 @@ def _separate(shifts: Array) -> list[int]:
     return order
 
 
-@dataclass(frozen=True, slots=True)
-class _Probe:
-    """hits (n_e, n) bool: which elimination finds which solution. rough (n_e,): how many digits more than
-    need be its candidates' errors have, on average. enough (n_e,): see `FirstRun.often_enough`. shifts
-    (n_r,) in rad: how far rounding moves the roots of the resultants."""
-
-    hits: Array
-    rough: Array
-    enough: Array
-    shifts: Array
-
-
-def _joined(parts: Sequence[_Probe]) -> _Probe:
-    """All solutions, the worst of the rest, and how often one is enough on average."""
-    hits = np.concatenate([part.hits for part in parts], axis=1)
-    rough, shifts = (
-        np.max([getattr(p, name) for p in parts], axis=0) for name in ("rough", "shifts")
-    )
-    return _Probe(hits, rough, np.mean([p.enough for p in parts], axis=0), shifts)
-
-
-def _probe(frames: Array, every: Sequence[Plan], count: int, rng: np.random.Generator) -> _Probe:
+def _probe(frames: Array, every: Sequence[Plan], count: int, rng: np.random.Generator) -> Probe:
     length, turning = every[0].length, every[0].turning
     q = _configurations(frames, turning, count, rng)
     if not len(q):  # singular everywhere: two axes on one line, or four that keep parallel
         hits = np.zeros((len(every), 0), dtype=bool)
         none = np.zeros(len(every))
-        return _Probe(hits, none, none, np.ones(len(RESULTANTS)))
+        return Probe(hits, none, none, np.ones(len(RESULTANTS)))
     poses = forward(frames, q, turning)
     runs = first_runs(frames, every, poses)
-    rough = np.array([digits_lost(run.before) for run in runs])
-    enough = np.array([run.often_enough for run in runs])
     unions = [distinct_of_runs([run.rows[i] for run in runs], turning) for i in range(len(poses))]
     shifts = np.ones((len(RESULTANTS), 1))
     if all(turning):
         shifts = root_shifts(over(frames, length), over(poses, length), q)
     hits = np.concatenate(unions, axis=1)
-    return _Probe(hits, rough, enough, np.quantile(shifts, 0.75, axis=1))
-
-
-def digits_lost(errors: Array) -> float:
-    """How many digits more than need be the errors (n,) have, on average; all where there are none."""
-    return (
-        float(np.maximum(np.log10(errors + 1e-16) - _FINE, 0.0).mean()) if len(errors) else -_FINE
-    )
-
-
-def distinct_of_runs(runs: list[Array], turning: Turning) -> Array:
-    """Which of the runs' rows (k, 6) has which of all distinct rows: (len(runs), n) bool. Joint values are
-    compared modulo turns."""
-    union = np.concatenate(runs)
-    gap = union[:, None] - union
-    apart = np.abs(np.where(turning, np.remainder(gap + np.pi, 2.0 * np.pi) - np.pi, gap))
-    same = apart.max(axis=2, initial=0.0) < _SAME
-    fresh = ~np.tril(same, -1).any(axis=1)
-    ends = np.cumsum([len(rows) for rows in runs])[:-1]
-    return np.array([part.any(axis=1) for part in np.split(same[fresh], ends, axis=1)])
+    return probe_of(runs, hits, np.quantile(shifts, 0.75, axis=1))
 
 
 def _configurations(frames: Array, turning: Turning, count: int, rng: np.random.Generator) -> Array:

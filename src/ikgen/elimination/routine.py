@@ -18,11 +18,12 @@ from ikgen.runtime.python.elimination.general_6r import (
     DIRECT,
     Elimination,
     Plan,
+    enough_alone,
     refined_rows,
     six_joint_rows,
 )
 from ikgen.runtime.python.elimination.six_joints import six_joints
-from ikgen.runtime.python.rows.solution_rows import Turning, distinct_rows
+from ikgen.runtime.python.rows.solution_rows import Turning, exact_first
 
 __all__ = [
     "Elimination",
@@ -69,8 +70,9 @@ class FirstRun(NamedTuple):
     @property
     def often_enough(self) -> float:
         """At what share of the first half of the poses it is enough: the others may be next to
-        singularities, where rounding decides."""
-        return float(self.enough[: (len(self.enough) + 1) // 2].mean())
+        singularities, where rounding decides. None of no poses."""
+        first = self.enough[: (len(self.enough) + 1) // 2]
+        return float(first.mean()) if len(first) else 0.0
 
 
 def first_runs(frames: Array, plans: Sequence[Plan], poses: Array) -> list[FirstRun]:
@@ -88,12 +90,11 @@ def first_runs(frames: Array, plans: Sequence[Plan], poses: Array) -> list[First
     for of, _, real, clear in found:
         start, end = end, end + len(of)
         good = start + np.flatnonzero(error[start:end] < policy.arrived)
-        good = good[np.lexsort((before[good] >= DIRECT, index[good]))]
-        distinct, pose, kept = distinct_rows(
-            rows[good], index[good], plan.turning, policy.coincident
+        exact = before[good] < DIRECT
+        distinct, pose, exact = exact_first(
+            rows[good], index[good], exact, plan.turning, policy.coincident
         )
-        count = np.bincount(pose, minlength=len(poses))
-        direct = np.bincount(pose[before[good[kept]] < DIRECT], minlength=len(poses))
-        enough = clear & (direct == real) & (count == direct) & (count > 0) & (count % 2 == 0)
+        count, direct = (np.bincount(k, minlength=len(poses)) for k in (pose, pose[exact]))
+        enough = enough_alone(real, clear, count, direct)
         out.append(FirstRun(_by_pose(distinct, pose, len(poses)), before[good], enough))
     return out

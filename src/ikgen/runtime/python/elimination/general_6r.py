@@ -25,6 +25,7 @@ from ikgen.runtime.python.newton.refinement import refine, smallest_singular_val
 from ikgen.runtime.python.rows.solution_rows import (
     Turning,
     distinct_rows,
+    exact_first,
     first_of_equals,
     rows_of,
     slides_near,
@@ -39,6 +40,7 @@ __all__ = [
     "Plan",
     "Way",
     "candidates",
+    "enough_alone",
     "refined_rows",
     "six_joint_rows",
 ]
@@ -186,12 +188,11 @@ def six_joint_rows(
         (pose, q, before), real, clear, stalled = _run(six, plan, way, moves, T, todo, policy)
         own, told = moves[0] is None, number >= len(plan.direct)
         beside = _noted(real, clear, todo, own, told, (least, unsure, blurred))
-        best = np.lexsort((before >= way[2], pose))
-        q, pose, kept = distinct_rows(q[best], pose[best], plan.turning, policy.coincident)
+        q, pose, exact = exact_first(q, pose, before < way[2], plan.turning, policy.coincident)
         mine = np.bincount(pose, minlength=size)[todo]
         if number == 0:
-            direct = np.bincount(pose[before[best[kept]] < way[2]], minlength=size)[todo]
-            settled = clear & (direct == real[0]) & (mine == direct) & (mine > 0) & (mine % 2 == 0)
+            direct = np.bincount(pose[exact], minlength=size)[todo]
+            settled = enough_alone(real[0], clear, mine, direct)
             found, of, count = q, pose, mine
             hollow[todo] = (real[0] > 0) & (mine == 0)  # roots that led to nothing
         else:
@@ -209,6 +210,13 @@ def six_joint_rows(
         todo = todo[~settled]
     more = _may_have_more(np.bincount(of, minlength=size) > 0, unsure, todo, least)
     return of, sorted_rows(found, of, plan.turning) * np.where(plan.turning, 1.0, plan.length), more
+
+
+def enough_alone(real: Index, clear: Flags, count: Index, direct: Index) -> Flags:
+    """Whether the first run is enough for poses (N,) of so many `real` roots, whether these are `clear`, by
+    the `count` of its solutions, and of those that are exact."""
+    even = (count > 0) & (count % 2 == 0)
+    return np.asarray(clear & (direct == real) & (count == direct) & even)
 
 
 def _noted(

@@ -11,6 +11,7 @@ from ikgen.runtime.python.rows.row_pairs import pairs
 __all__ = [
     "Turning",
     "distinct_rows",
+    "exact_first",
     "first_of_equals",
     "places",
     "rows_of",
@@ -80,6 +81,15 @@ def distinct_rows(
     q = np.where(turning, np.pi - np.mod(np.pi - q[order], 2.0 * np.pi), q[order])
     keep = first_of_equals(q, pose[order], turning, coincident)
     return q[keep], pose[order[keep]], order[keep]
+
+
+def exact_first(
+    q: Array, pose: Index, exact: Flags, turning: Turning, coincident: float
+) -> tuple[Array, Index, Flags]:
+    """`distinct_rows`, of equal ones an exact one where there is any, and which of them are exact (k,)."""
+    order = np.lexsort((~exact, pose))
+    q, pose, kept = distinct_rows(q[order], pose[order], turning, coincident)
+    return q, pose, exact[order[kept]]
 
 
 def sorted_rows(q: Array, pose: Index, turning: Turning) -> Array:
