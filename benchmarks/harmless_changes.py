@@ -67,11 +67,6 @@ HARMLESS = (
         "<", "<=", _EQUAL,
     ),
     HarmlessChange(
-        "runtime/python/singular/meeting_rows.py",
-        "for gap in gaps[np.abs(gaps).max(axis=1) < arm.policy.alike]:",
-        "<", "<=", _EQUAL,
-    ),
-    HarmlessChange(
         "runtime/python/singular/near_continuum.py",
         "broken = curve & (worst >= arm.policy.arrived)",
         ">=", ">", _EQUAL,
@@ -88,7 +83,7 @@ HARMLESS = (
     ),
     HarmlessChange(
         "runtime/python/solving/path_following.py",
-        "return q[None], sigma < arm.policy.singular_below, Status.OK",
+        "return np.asarray(sigma < arm.policy.singular_below)",
         "<", "<=", _EQUAL,
     ),
     HarmlessChange(
@@ -113,12 +108,12 @@ HARMLESS = (
     ),
     HarmlessChange(
         "runtime/python/roots/trig_quartic_roots.py",
-        "return (u, v) if abs(u - c) + abs(v - s) < reach else (c, s)",
+        "return (u, v) if abs(u - c) + abs(v - s) < reach else None",
         "<", "<=", _EQUAL,
     ),
     HarmlessChange(
         "runtime/python/roots/trig_quartic_roots.py",
-        "if h < 1e-7:  # the value at the extremum is round-off: Newton steps would be too",
+        "if h < _LEAST_HALF:  # the value at the extremum is round-off: Newton steps would be too",
         "<", "<=", _EQUAL,
     ),
     HarmlessChange(
@@ -286,13 +281,8 @@ HARMLESS = (
         "<=", "<", _EQUAL,
     ),
     HarmlessChange(
-        "verify/coverage.py",
-        "if all(arm.distance(candidate, other) > FOUND_TOLERANCE for other in known):",
-        ">", ">=", _EQUAL,
-    ),
-    HarmlessChange(
         "runtime/python/roots/trig_quartic_roots.py",
-        "return (first, second) if square >= -1e-6 * (1.0 + middle * middle) else ()",
+        "return (first, second) if square >= -_REAL * (1.0 + middle * middle) else ()",
         ">=", ">", _EQUAL,
     ),
     HarmlessChange(
@@ -369,11 +359,6 @@ HARMLESS = (
         "solver/soundness.py",
         "found.append(at[smallest > least_regular(REGULAR, probes.typical)])",
         ">", ">=", _EQUAL,
-    ),
-    HarmlessChange(
-        "runtime/python/roots/trig_quartic_roots.py",
-        "return (u, v) if abs(u - c) + abs(v - s) < reach else (c, s)",
-        "<", "<=", _EQUAL,
     ),
 )  # fmt: skip
 

@@ -135,6 +135,33 @@ def test_roots_far_apart_are_found_together_whatever_the_size_of_the_equation(
         np.testing.assert_allclose(np.sort(np.arctan2(s, c), axis=1), wanted, atol=1e-9)
 
 
+@pytest.mark.parametrize("half", [3e-7, 1e-5, 1e-4, 1e-3, 9e-3, 0.019])
+def test_pairs_of_roots_are_found_together(half: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """In one place of the circle and another, as alone; with one pair, or with two."""
+    rng = np.random.default_rng(10)
+    one = rng.uniform(-np.pi, np.pi, 60)
+    other = one + rng.uniform(1.0, 5.0, 60)
+    wide = np.where(np.arange(60) < 30, half, rng.uniform(0.1, 0.4, 60))
+    wanted = np.sort(
+        np.angle(np.exp(1j * np.stack([one - half, one + half, other - wide, other + wide]))), 0
+    )
+    inner, outer = np.cos(half), np.cos(wide)
+    mixed = -outer * np.exp(1j * one) - inner * np.exp(1j * other)
+    twice = 0.5 * np.exp(1j * (one + other))
+    K = np.stack(
+        [twice.real, twice.imag, mixed.real, mixed.imag, 0.5 * np.cos(one - other) + inner * outer]
+    )
+    alone = np.array(
+        [sorted(np.arctan2(s, c) for c, s in trig_quartic(*k)[1]) for k in K.T.tolist()]
+    )
+    monkeypatch.setattr(trig_quartic_roots, "trig_quartic", None)
+    count, c, s = trig_quartic_batch(*K)
+    assert count.tolist() == [4] * 60
+    found = np.sort(np.arctan2(s, c), axis=1)
+    for rows in (wanted.T, alone):  # to round-off of a root beside another
+        np.testing.assert_allclose(found, rows, atol=1e-15 / half + 1e-14)
+
+
 def test_the_root_of_the_resolvent_takes_few_steps() -> None:
     rng, steps = np.random.default_rng(9), [0]
 

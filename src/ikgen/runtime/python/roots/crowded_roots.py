@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
+from typing import Any
 
 from ikgen.runtime.python.roots.quartic_lines import Coefficients, Line
 
-__all__ = ["crowded_place", "roots_around"]
+__all__ = ["crowded_place", "in_one_place", "roots_around"]
 
 _TOGETHER = 0.995  # distance of lines whose roots are within 0.1 rad
 _SAME_WAY = 0.98  # cosine of the angle between two that have theirs in one place
@@ -19,13 +20,19 @@ _Pair = tuple[float, float]
 
 def crowded_place(lines: Sequence[Line[float]]) -> _Pair | None:
     """A direction near which two lines have all their roots."""
-    if len(lines) < 2 or any(not _TOGETHER < abs(d) < 1.01 for _, _, d in lines):
+    if len(lines) < 2 or not in_one_place(*lines):
         return None
     (a, b), (c, s) = ((x, y) if d > 0.0 else (-x, -y) for x, y, d in lines)
-    if not a * c + b * s > _SAME_WAY:
-        return None
     size = ((a + c) ** 2 + (b + s) ** 2) ** 0.5
     return (a + c) / size, (b + s) / size
+
+
+def in_one_place(one: Line[Any], other: Line[Any]) -> Any:
+    """Whether two lines, of floats or of arrays, have all their roots near one direction."""
+    (a, b, d), (c, s, e) = one, other
+    touching = (abs(d) > _TOGETHER) & (abs(d) < 1.01) & (abs(e) > _TOGETHER) & (abs(e) < 1.01)
+    cosine = a * c + b * s
+    return touching & (abs(cosine) > _SAME_WAY) & (cosine * d * e > 0.0)
 
 
 def roots_around(k: Coefficients[float], c: float, s: float, tol: float) -> list[_Pair]:

@@ -18,9 +18,12 @@ __all__ = [
     "Arithmetic",
     "Coefficients",
     "Line",
+    "quartic_ends",
+    "quartic_extremum",
     "quartic_lines",
     "quartic_step",
     "quartic_values",
+    "quartic_zero",
 ]
 
 _FLAT = 1e-14  # of what a slope is the sum of: less is round-off, as at a triple root
@@ -134,3 +137,34 @@ def quartic_step(
     c, s = c - step * s, s + step * c
     r = on.sqrt(c * c + s * s)
     return c / r, s / r, abs(step)
+
+
+def quartic_zero(
+    k: Coefficients[_Value], c: _Value, s: _Value, order: int, on: Arithmetic[_Value]
+) -> tuple[_Value, _Value]:
+    """Up to five steps from (c, s) to a zero of the quartic (order 0) or of its derivative (order 1)."""
+    for _ in range(5):
+        c, s, step = quartic_step(k, c, s, order, on)
+        if on.every(step < 1e-9):
+            break
+    return c, s
+
+
+def quartic_extremum(
+    k: Coefficients[_Value], c: _Value, s: _Value, on: Arithmetic[_Value]
+) -> tuple[_Value, _Value, _Value, _Value]:
+    """The extremum (x, y) near (c, s), the curvature there, and the square of half the distance (rad) of
+    the roots beside it as its parabola has them, below zero for complex ones; infinite without a
+    curvature."""
+    x, y = quartic_zero(k, c, s, 1, on)
+    value, _, curve = quartic_values(k, x, y)
+    flat = abs(curve) < 1e-200
+    return x, y, curve, on.pick(flat, math.inf, -2.0 * value / on.pick(flat, 1.0, curve))
+
+
+def quartic_ends(
+    x: _Value, y: _Value, half: _Value, on: Arithmetic[_Value]
+) -> tuple[tuple[_Value, _Value], tuple[_Value, _Value]]:
+    """The directions to both sides of (x, y) whose tangent from there is `half`."""
+    n = on.sqrt(1.0 + half * half)
+    return ((x - half * y) / n, (y + half * x) / n), ((x + half * y) / n, (y - half * x) / n)

@@ -8,15 +8,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ikgen.runtime.python.arrays.array_types import Array, Flags
-from ikgen.runtime.python.roots.crowded_roots import crowded_place, roots_around
+from ikgen.runtime.python.roots.crowded_roots import crowded_place, in_one_place, roots_around
 from ikgen.runtime.python.roots.quartic_lines import (
     ARRAYS,
     FLOATS,
     Coefficients,
     Line,
+    quartic_ends,
+    quartic_extremum,
     quartic_lines,
     quartic_step,
-    quartic_values,
+    quartic_zero,
 )
 
 __all__ = [
@@ -29,7 +31,13 @@ __all__ = [
 ]
 
 _LEAST = 1e-8  # second harmonic over the rest, below which there is a line instead of a conic
+_REAL = (
+    1e-6  # square of half the distance of two lines, below zero, where rounding makes them complex
+)
 _CHORD = 1e-3  # half width from which a line's chord tells its roots well
+_TOUCHING = 0.02  # half width below which an extremum tells them
+_LEAST_HALF = 1e-7  # distance from the extremum below which a root is round-off
+_APART = 1e-3  # distance of two roots that are not the same
 _Pair = tuple[float, float]
 
 
@@ -56,7 +64,7 @@ def trig_quartic(
             continue
         r = math.sqrt(max((1.0 - d) * (1.0 + d), 0.0))
         found = None
-        if r < 0.02:
+        if r < _TOUCHING:
             e = math.copysign(1.0, d)
             found = _tangent(k, e * x, e * y, r, tol)
         if found is None:
@@ -77,26 +85,17 @@ def _lines(k: Coefficients[float]) -> tuple[Line[float], ...]:
         line = (k[2] / rest, k[3] / rest, -k[4] / rest) if 2.0 * rest > abs(k[4]) else None
         return (line,) if line else ()
     first, second, square, middle = quartic_lines(k, rho, FLOATS)
-    return (first, second) if square >= -1e-6 * (1.0 + middle * middle) else ()
-
-
-def _to_zero(k: Coefficients[float], c: float, s: float, order: int) -> _Pair:
-    """Up to five steps from (c, s) to a zero of the function (order 0) or of its derivative (order 1)."""
-    for _ in range(5):
-        c, s, step = quartic_step(k, c, s, order, FLOATS)
-        if step < 1e-9:
-            break
-    return c, s
+    return (first, second) if square >= -_REAL * (1.0 + middle * middle) else ()
 
 
 def _near(k: Coefficients[float], c: float, s: float, reach: float) -> _Pair:
-    """`_to_zero` to a root, undone where it leaves `reach`: among three close roots."""
+    """Steps to a root, undone where they leave `reach`: among three close roots."""
     return _within(k, c, s, reach) or (c, s)
 
 
 def _within(k: Coefficients[float], c: float, s: float, reach: float) -> _Pair | None:
-    """`_to_zero` to a root, unless it leaves `reach`."""
-    u, v = _to_zero(k, c, s, 0)
+    """Steps to a root, unless they leave `reach`."""
+    u, v = quartic_zero(k, c, s, 0, FLOATS)
     return (u, v) if abs(u - c) + abs(v - s) < reach else None
 
 
@@ -107,21 +106,20 @@ def _tangent(
     pair of complex roots with imaginary parts up to tol, else no root; None: no such extremum
     within reach, the half width of the line's chord, or one of two roots that are much closer, or not
     where a parabola has them, as among four."""
-    x, y = _to_zero(k, c, s, 1)
-    value, _, curve = quartic_values(k, x, y)
-    if abs(x - c) + abs(y - s) > 0.5 * reach + 1e-3 or abs(curve) < 1e-200:
+    x, y, curve, square = quartic_extremum(k, c, s, FLOATS)
+    if abs(x - c) + abs(y - s) > 0.5 * reach + 1e-3 or square == math.inf:
         return None
-    r = 2.0 * value / curve
-    h = math.sqrt(abs(r))
+    h = math.sqrt(abs(square))
     if h < 0.3 * reach - 1e-3:
         return None
-    if r >= 0.0:
-        return [(x, y)] if r <= tol * tol + 1e-14 / abs(curve) else None if reach > 1e-4 else []
+    if square <= 0.0:
+        return (
+            [(x, y)] if -square <= tol * tol + 1e-14 / abs(curve) else None if reach > 1e-4 else []
+        )
     if h > 3.0 * reach + 1e-3:
         return None
-    n = math.sqrt(1.0 + h * h)
-    ends = (((x - h * y) / n, (y + h * x) / n), ((x + h * y) / n, (y - h * x) / n))
-    if h < 1e-7:  # the value at the extremum is round-off: Newton steps would be too
+    ends = quartic_ends(x, y, h, FLOATS)
+    if h < _LEAST_HALF:  # the value at the extremum is round-off: Newton steps would be too
         return list(ends)
     roots = [_within(k, u, v, 0.5 * h) for u, v in ends]
     if h > _CHORD and not all(roots):
@@ -135,7 +133,8 @@ def trig_quartic_batch(
     """`trig_quartic` on arrays (N,): counts (N,), cosines and sines (N, 4), NaN beyond the count.
     Rows that are not finite count as free ones (-1).
 
-    Rows whose roots are far apart are solved together, the few others one by one."""
+    Rows whose roots are far apart, or two by two in places far apart, are solved together, the few others
+    one by one."""
     K = np.stack(np.broadcast_arrays(a2, b2, a1, b1, a0), axis=-1).astype(float)
     K[~np.isfinite(K).all(axis=1)] = 0.0
     size = np.abs(K).max(axis=1)
@@ -160,18 +159,47 @@ def _regular_roots(k: Array) -> tuple[Array, Array, Flags]:
     a2, b2, a1, b1, a0 = k.T
     rho = np.hypot(a2, b2)
     good = rho >= _LEAST * np.maximum(np.hypot(a1, b1), np.abs(a0))
-    one, two, square, _ = quartic_lines((a2, b2, a1, b1, a0), rho, ARRAYS)
+    one, two, square, middle = quartic_lines((a2, b2, a1, b1, a0), rho, ARRAYS)
     x, y, d = (np.stack(pair, axis=1) for pair in zip(one, two))
     r2 = (1.0 - d) * (1.0 + d)
-    good &= (square > 1e-6) & ((r2 > 4e-4) | (np.abs(d) > 1.01)).all(axis=1)
     r = np.sqrt(np.where(r2 > 0.0, r2, np.nan))
-    c = np.concatenate([d * x - r * y, d * x + r * y], axis=1)[:, (0, 2, 1, 3)]
-    s = np.concatenate([d * y + r * x, d * y - r * x], axis=1)[:, (0, 2, 1, 3)]
-    columns = (a2[:, None], b2[:, None], a1[:, None], b1[:, None], a0[:, None])
+    c = np.stack([d * x - r * y, d * x + r * y], axis=2)
+    s = np.stack([d * y + r * x, d * y - r * x], axis=2)
+    half = np.full(d.shape, math.inf)  # of the distance of two roots, where an extremum tells them
+    touching = (np.abs(d) < 1.01) & (r2 < _TOUCHING**2)
+    real = touching.all(axis=1) & (square >= -_REAL * (1.0 + middle * middle))
+    good &= ((square > _REAL) | real) & ~in_one_place(one, two)
+    row, line = np.nonzero(touching & good[:, None])
+    if len(row):
+        at = x[row, line], y[row, line], d[row, line]
+        c[row, line], s[row, line], half[row, line] = _beside_contacts(tuple(k[row].T), *at)
+    first = c, s
+    columns = tuple(e[:, None, None] for e in k.T)
     for _ in range(4):
         c, s, _ = quartic_step(columns, c, s, 0, ARRAYS)
-    gap = np.abs(c[:, :, None] - c[:, None]) + np.abs(s[:, :, None] - s[:, None]) + np.eye(4)
-    return c, s, good & ~(gap < 1e-3).any(axis=(1, 2))
+    left = np.abs(c - first[0]) + np.abs(s - first[1]) >= 0.5 * half[:, :, None]
+    pairs = (np.abs(e[:, 0, :, None] - e[:, 1, None]) for e in (c, s))
+    good &= ~(left | (sum(pairs) < _APART)).any(axis=(1, 2))
+    ends = np.abs(c[:, :, 0] - c[:, :, 1]) + np.abs(s[:, :, 0] - s[:, :, 1])
+    good &= ~((ends < np.minimum(half, _APART)) | np.isnan(half)).any(axis=1)
+    return c.reshape(-1, 4), s.reshape(-1, 4), good
+
+
+def _beside_contacts(
+    k: Coefficients[Array], x: Array, y: Array, d: Array
+) -> tuple[Array, Array, Array]:
+    """Cosines and sines (n, 2) of the two roots each beside the extremum near a line's point of contact,
+    as its parabola has them, and half their distance (n,): NaN where `_tangent` knows more."""
+    side = np.copysign(1.0, d)
+    c, s = side * x, side * y
+    reach = np.sqrt(np.maximum((1.0 - d) * (1.0 + d), 0.0))
+    u, v, _, square = quartic_extremum(k, c, s, ARRAYS)
+    half = np.sqrt(np.maximum(square, 0.0))
+    near = np.abs(u - c) + np.abs(v - s) <= 0.5 * reach + 1e-3
+    near &= (half >= np.maximum(0.3 * reach - 1e-3, _LEAST_HALF)) & (half <= 3.0 * reach + 1e-3)
+    half = np.where(near, half, np.nan)
+    (c0, s0), (c1, s1) = quartic_ends(u, v, half, ARRAYS)
+    return np.stack([c0, c1], axis=1), np.stack([s0, s1], axis=1), half
 
 
 def trig_quartic_branches(a2: float, b2: float, a1: float, b1: float, a0: float) -> list[_Pair]:
