@@ -68,7 +68,7 @@ HARMLESS = (
     ),
     HarmlessChange(
         "runtime/python/singular/near_continuum.py",
-        "broken = curve & (worst >= arm.policy.arrived)",
+        "broken = curve & (curves.worst >= arm.policy.arrived)",
         ">=", ">", _EQUAL,
     ),
     HarmlessChange(

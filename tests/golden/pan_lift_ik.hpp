@@ -1882,16 +1882,21 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
   bool passes(const Passed& passed, const double* q) noexcept { return passed_part(passed, at(q)) > 0; }
 
  private:
-  static constexpr int kMost = 96, kLeast = 4, kRounds = 3;
-  static constexpr double kBeside = 0.06, kSameWay = 0.9;
+  static constexpr int kMost = 96;
+  static constexpr int kLeast = 4;
+  static constexpr int kRounds = 3;
+  static constexpr double kBeside = 0.06;
+  static constexpr double kSameWay = 0.9;
   static constexpr double kFloor = 0.1, kAhead = 0.5;  // the shortest step, of Policy::kTryStep; how a step turns at most
-  static constexpr double kOver = 0.05, kOn = 1e-6;  // of a part; rad or m off it
+  static constexpr double kOver = 0.05;  // of a part
+  static constexpr double kOn = 1e-6;    // rad or m off a curve
 
   struct Crossing {
     Sample from, to;
     bool sense;  // at the first
   };
-  static constexpr int kCrossings = 4, kHalves = 4;
+  static constexpr int kCrossings = 4;
+  static constexpr int kHalves = 4;
   static constexpr double kAside = 0.4;  // rad or m: so far from a crossing curves are apart
   Crossing crossing[kCrossings];
   int crossings = 0;

@@ -1308,7 +1308,7 @@ def _samples_beside(arm: _Arm, q: Array, T: Array) -> _Reduced:
     return _sampled(arm, _Reduced(q, still, unknown, nothing, nothing), T)[0]
 
 
-def _sampled(arm: _Arm, at: _Reduced, T: Array) -> tuple[_Reduced, _Flags]:
+def _sampled(arm: _Arm, at: _Reduced, T: Array) -> tuple[_Reduced, _Flags, _Flags]:
     """The configurations of curves beside some (k,), of which one direction of the error is left towards
     aims T (k, ...)."""
     near, going, before = np.ones(len(T), dtype=bool), np.arange(len(T)), np.full(len(T), np.inf)
@@ -1326,7 +1326,9 @@ def _sampled(arm: _Arm, at: _Reduced, T: Array) -> tuple[_Reduced, _Flags]:
         going, before = going[on], moved.left[on]
         if not len(going):
             break
-    return at, near
+    converged = np.ones(len(T), dtype=bool)
+    converged[going] = False
+    return at, near, converged
 
 
 # Rows of several poses in one array: without repetitions, and in order.
@@ -1408,7 +1410,7 @@ def _look_between(arm: _Arm, q: Array, to: Array, T: Array) -> tuple[_Index, Arr
     with np.errstate(all="ignore"):
         way, a, parts = _differences(arm, q, to), _samples_beside(arm, q, T), []
         for part in range(_PARTS):
-            b, _ = _sampled(arm, a._replace(q=q + (part + 1) / _PARTS * way), T)
+            b = _sampled(arm, a._replace(q=q + (part + 1) / _PARTS * way), T)[0]
             width = np.ones(len(q))
             parts.append(_Parts(a, b, np.arange(len(q)), part * width, width))
             a = b
@@ -1933,7 +1935,7 @@ def _turned_inside(arm: _Arm, q: Array) -> Array:
 # directions hardly move the pose.
 
 
-_curve_crossings_MOST = 4  # crossings of a curve
+_CROSSINGS = 4  # crossings of a curve
 _HALVES = 4  # by which they are found
 _ASIDE = 0.4  # rad or m: so far from a crossing curves are apart
 
@@ -1946,7 +1948,7 @@ def _beside_crossings(arm: _Arm, parts: _Parts, T: Array) -> tuple[_Index, Array
     sense = _keeps(arm, a, T[owner])
     crossing = np.flatnonzero(sense != _keeps(arm, b, T[owner]))
     crossing = crossing[np.argsort(owner[crossing], kind="stable")]
-    crossing = crossing[_places(owner[crossing]) < _curve_crossings_MOST]
+    crossing = crossing[_places(owner[crossing]) < _CROSSINGS]
     if not len(crossing):
         return owner[:0], a.q[:0]
     parts, sense = _some_of(parts, crossing), sense[crossing]
@@ -1974,15 +1976,221 @@ def _others(arm: _Arm, at: _Reduced, T: Array) -> Array:
     return _flow_and_others(slope, at.still)[1]
 
 
+# Walks along curves, from all their starts to both sides at once, until two on the same curve meet.
+
+
+_curve_walks_MOST = 96  # samples to a side of a curve
+_ASTRAY = 4  # samples in a row that show that no curve is near
+_curve_walks_BESIDE = 0.06
+
+_SAME_WAY = 0.9
+_FACING = 0.7  # cosine of the turn between two samples that meet
+_MEETING = 1.1  # steps between them
+_curve_walks_SETTLED = 4  # steps behind which a walk is on its curve, if it began beside that
+_ON = 1e-6  # rad or m off a curve
+_ROUNDS = 3
+
+
+class _Walked(NamedTuple):
+    """The `parts` of curves that were passed, and the `ends` behind which too much is left, both under the
+    first start of a curve; which that is of each start, `same` (k,), and the most that is left on its
+    curve, `worst` (k,)."""
+
+    parts: _Parts
+    ends: _Parts
+    same: _Index
+    worst: Array
+
+
+class _Meetings(NamedTuple):
+    """Pairs of samples on one curve, by their numbers `one` and `other` (n,); what comes of the one when it
+    goes to the other, `there` (n,), and how far `ahead` that is (n,)."""
+
+    one: _Index
+    other: _Index
+    there: _Reduced
+    ahead: Array
+
+
+def _walked(arm: _Arm, first: _Reduced, T: Array, group: _Index) -> _Walked:
+    """On from samples towards aims T (k, ...) to both sides at once, the fastest joint by
+    `policy.try_step` from one to the next, until two of a `group` (k,) meet on a curve, or one comes back
+    to where it was."""
+    walks = _Walks(arm, first, T, group)
+    parts, ends, owner, T = [], [], walks.begun, walks.T
+    b = _some_of(walks.origin, owner)
+    astray, before = np.zeros(len(owner), dtype=np.intp), b.still
+    for step in range(_curve_walks_MOST):
+        c, near, sure = _sampled(arm, b._replace(q=_ahead(arm, b, before)), T[owner])
+        astray = np.where(near, 0, astray + 1)
+        left = np.abs(c.left)
+        on = left < arm.policy.fold_reach
+        place = ((_curve_walks_MOST + 2) * owner + step).astype(float)
+        passed = _Parts(b, c, owner, place, np.ones(len(owner)))
+        ends.append(_some_of(passed, ~on & (left < _BEYOND * arm.policy.fold_reach)))
+        on &= astray < _ASTRAY
+        passed, astray = _some_of(passed, on), astray[on]
+        going, bridges = walks.went_on(passed, (near & sure)[on], step)
+        parts += [passed, bridges]
+        before = passed.a.still[going]
+        b, owner, astray = _some_of(passed.b, going), passed.owner[going], astray[going]
+        if not len(owner):
+            break
+    walks.closed[owner] = True
+    return walks.of_curves(_joined(*parts), _joined(*ends))
+
+
+class _Walks:
+    """From `origin` samples (2 k,) towards aims `T`, to one side and the other of all starts (k,); the
+    numbers of those that have `begun`: of starts near each other on one curve the first alone."""
+
+    def __init__(self, arm: _Arm, first: _Reduced, T: Array, group: _Index) -> None:
+        self._arm, self._count = arm, len(T)
+        near = _meetings(arm, first, T, group, (1.0, -1.0))
+        self._same = _united(np.arange(len(T)), near.one, near.other)
+        back = first._replace(still=-first.still, out=-first.out, left=-first.left)
+        self.origin: _Reduced = _joined(first, back)
+        self._settled = self.origin
+        self.T, self._group = np.concatenate([T, T]), np.concatenate([group, group])
+        self.begun = np.flatnonzero(np.tile(self._same == np.arange(len(T)), 2))
+        self.closed, self._worst = np.zeros(2 * len(T), dtype=bool), np.abs(self.origin.left)
+
+    def went_on(self, passed: _Parts, sure: _Flags, step: int) -> tuple[_Flags, _Parts]:
+        """Which walks (n,) go on behind the last parts (n,), and the parts between those that meet
+        there."""
+        arm, owner, count, c = self._arm, passed.owner, self._count, passed.b
+        self._worst[owner] = np.maximum(self._worst[owner], np.where(sure, np.abs(c.left), 0.0))
+        if step == _curve_walks_SETTLED:
+            self._settled = _Reduced(*(x.copy() for x in self.origin))
+            for whole, part in zip(self._settled, c):
+                whole[owner] = part
+        if step > 1:
+            self.closed[owner[_back(arm, _some_of(self.origin, owner), passed.a)]] = True
+        group = np.where(sure, self._group[owner], -1 - owner)
+        met = _meetings(arm, c, self.T[owner], group, (-1.0,))
+        self._same = _united(self._same, owner[met.one] % count, owner[met.other] % count)
+        going = ~(self.closed[owner] | self.closed[owner % count])
+        going[met.one] = going[met.other] = False
+        if step > _curve_walks_SETTLED + 1:
+            going &= ~_back(arm, _some_of(self._settled, owner), c)
+        return going, _bridges(passed, met)
+
+    def of_curves(self, parts: _Parts, ends: _Parts) -> _Walked:
+        """What was passed to either side, by curves."""
+        same, once = self._same, np.ones(2 * self._count, dtype=bool)
+        once[self._count :] = ~self.closed[: self._count]
+        worst = np.zeros(self._count)
+        np.maximum.at(worst, np.tile(same, 2)[once], np.nan_to_num(self._worst[once]))
+        parts, ends = (_some_of(some, once[some.owner]) for some in (parts, ends))
+        parts, ends = (
+            some._replace(owner=same[some.owner % self._count]) for some in (parts, ends)
+        )
+        return _Walked(parts, ends, same, worst[same])
+
+
+def _ahead(arm: _Arm, b: _Reduced, before: Array) -> Array:
+    """Rows (n, dof) a step on from samples, as the curve turned from the directions `before` (n, k)."""
+    course = 1.5 * b.still - 0.5 * before
+    q: Array = b.q.copy()
+    q[:, list(arm.moving)] += arm.policy.try_step * course / np.abs(course).max(axis=1)[:, None]
+    return q
+
+
+def _meetings(
+    arm: _Arm, at: _Reduced, T: Array, group: _Index, senses: tuple[float, ...]
+) -> _Meetings:
+    """Which samples of a `group` (n,) are by a step from each other on one curve, in the same sense (1) or
+    each other's way (-1)."""
+    one, other = _curve_walks_pairs(group)
+    a, b = _some_of(at, one), _some_of(at, other)
+    turn = (a.still * b.still).sum(axis=1)
+    sense = np.where(turn < 0.0, -1.0, 1.0)
+    mean, _ = _unit(a.still + sense[:, None] * b.still)
+    a = a._replace(still=mean)
+    way, ahead, beside = _way(arm, a, b.q)
+    near = np.abs(way).max(axis=1) < _MEETING * arm.policy.try_step
+    near &= (beside < _curve_walks_BESIDE) & (np.abs(turn) > _FACING) & np.isin(sense, senses)
+    a, one, other, ahead = _some_of(a, near), one[near], other[near], ahead[near]
+    if len(one):
+        on, a = _reached(arm, a, at.q[other], T[one])
+        a, one, other, ahead = _some_of(a, on), one[on], other[on], ahead[on]
+    if len(one):
+        there = at.q[one] + _differences(arm, at.q[one], at.q[other])  # not whole turns from there
+        a = _sampled(arm, a._replace(q=there), T[one])[0]
+    return _Meetings(one, other, a, ahead)
+
+
+def _bridges(passed: _Parts, met: _Meetings) -> _Parts:
+    """The parts between samples that meet, if they have not passed each other."""
+    some = met.ahead > 0.0
+    one = met.one[some]
+    place = passed.place[one] + 1.0
+    return _Parts(
+        _some_of(passed.b, one),
+        _some_of(met.there, some),
+        passed.owner[one],
+        place,
+        np.ones(len(one)),
+    )
+
+
+def _united(same: _Index, one: _Index, other: _Index) -> _Index:
+    """The first starts of curves (k,) where pairs of starts are on one each."""
+    for a, b in zip(one.tolist(), other.tolist()):
+        low, high = sorted((same[a], same[b]))
+        same = np.where(same == high, low, same)
+    return same
+
+
+def _curve_walks_pairs(group: _Index) -> tuple[_Index, _Index]:
+    """The members of each pair (n,) of a group (k,)."""
+    order = np.argsort(group, kind="stable")
+    in_order = group[order]
+    more = np.searchsorted(in_order, in_order, side="right") - np.arange(len(group)) - 1
+    one = np.repeat(np.arange(len(group)), more)
+    return order[one], order[one + 1 + _places(one)]
+
+
+def _back(arm: _Arm, a: _Reduced, b: _Reduced) -> _Flags:
+    """Whether curves are at samples of them again, and not at other parts that are near."""
+    way, _, beside = _way(arm, a, b.q)
+    near = np.abs(way).max(axis=1) < 0.75 * arm.policy.try_step
+    same = (a.still * b.still).sum(axis=1) > _SAME_WAY
+    return np.asarray((beside < _curve_walks_BESIDE) & near & same)
+
+
+def _reached(arm: _Arm, at: _Reduced, q: Array, T: Array) -> tuple[_Flags, _Reduced]:
+    """Which rows q (n, dof) lie on the curves of samples beside them, towards aims T (n, ...)."""
+    out, going, moving = np.zeros(len(q), dtype=bool), np.arange(len(q)), list(arm.moving)
+    for last in range(_ROUNDS):
+        here = _some_of(at, going)
+        _, ahead, beside = _way(arm, here, q[going])
+        out[going[beside < _ON]] = True
+        on = (beside >= _ON) & (beside < ahead**2)
+        going, here = going[on], _some_of(here, on)
+        if not len(going) or last == _ROUNDS - 1:
+            break
+        here.q[:, moving] += ahead[on, None] * here.still
+        here = _sampled(arm, here, T[going])[0]
+        for whole, part in zip(at, here):
+            whole[going] = part
+    return out, at
+
+
+def _way(arm: _Arm, at: _Reduced, q: Array) -> tuple[Array, Array, Array]:
+    """The ways (k, n) from samples to rows q (k, dof), how far they go along the still direction (k,), and
+    how far beside that at most (k,)."""
+    way = _differences(arm, at.q, q)[:, list(arm.moving)]
+    along = (way * at.still).sum(axis=1)
+    return way, along, np.abs(way - along[:, None] * at.still).max(axis=1)
+
+
 # Solutions on what is a continuum of the geometry that was solved, and none of the file's.
 
 
-_near_continuum_MOST = 96  # samples to a side of a curve
 _LEAST = 4
 
-_ASTRAY = 4  # samples in a row that show that no curve is near
-_near_continuum_BESIDE, _SAME_WAY = 0.06, 0.9
-_OVER, _ON, _ROUNDS = 0.05, 1e-6, 3  # of a part; rad or m off it
+_OVER = 0.05  # of a part
 
 
 class _Traced(NamedTuple):
@@ -2019,27 +2227,28 @@ def _trace(arm: _Arm, q: Array, T: Array) -> _Traced:
     asked = np.concatenate([q, T.reshape(len(q), -1)], axis=1)
     _, first, again = np.unique(asked, axis=0, return_index=True, return_inverse=True)
     again = again.reshape(-1)
-    curve, broken, owner, rows = _traced(arm, q[first], T[first])
+    same, curve, broken, owner, rows = _traced(arm, q[first], T[first])
+    again = same[again]
     begin, end = np.searchsorted(owner, again), np.searchsorted(owner, again, side="right")
     whose = np.repeat(np.arange(len(q)), end - begin)
     return _Traced(curve[again], broken[again], whose, rows[begin[whose] + _places(whose)])
 
 
-def _traced(arm: _Arm, q: Array, T: Array) -> _Traced:
-    """`_trace` of rows that differ."""
-    parts, ends, worst = _followed(arm, q, T)
-    steps, broken = _kinds(arm, parts, worst)
-    here, last = _some_of(parts, broken[parts.owner]), _some_of(ends, broken[ends.owner])
+def _traced(arm: _Arm, q: Array, T: Array) -> tuple[_Index, _Flags, _Flags, _Index, Array]:
+    """`_trace` of rows that differ, behind the first row (k,) on the curve of each."""
+    curves = _followed(arm, q, T)
+    steps, broken = _kinds(arm, curves)
+    here, last = (_some_of(some, broken[some.owner]) for some in curves[:2])
     found = _look(arm, _joined(here, last, _crossing_parts(arm, here, T)), T, steps)
-    return _Traced(steps >= _LEAST, broken, *found)
+    return curves.same, steps >= _LEAST, broken, *found
 
 
-def _kinds(arm: _Arm, parts: _Parts, worst: Array) -> tuple[_Index, _Flags]:
-    """How many samples (k,) there are of what was followed, with the most (k,) that is left there, and
-    which are curves of the solved geometry that the file's arm has not."""
-    steps = np.bincount(parts.owner, minlength=len(worst))
+def _kinds(arm: _Arm, curves: _Walked) -> tuple[_Index, _Flags]:
+    """How many samples there are of each curve (k,), and which are curves of the solved geometry that the
+    file's arm has not."""
+    steps = np.bincount(curves.parts.owner, minlength=len(curves.worst))
     curve = steps >= _LEAST
-    broken = curve & (worst >= arm.policy.arrived)
+    broken = curve & (curves.worst >= arm.policy.arrived)
     return steps, broken
 
 
@@ -2054,15 +2263,16 @@ def _crossing_parts(arm: _Arm, parts: _Parts, T: Array) -> _Parts:
     first, owner = _some_of(first, fresh), owner[fresh]
     if not len(owner):
         return none
-    more, ends, worst = _follow(arm, first, T[owner])
-    _, broken = _kinds(arm, more, worst)
-    out: _Parts = _joined(*(_some_of(some, broken[some.owner]) for some in (more, ends)))
+    curves = _walked(arm, first, T[owner], owner)
+    _, broken = _kinds(arm, curves)
+    out: _Parts = _joined(*(_some_of(some, broken[some.owner]) for some in curves[:2]))
     return out._replace(owner=owner[out.owner])
 
 
-def _followed(arm: _Arm, q: Array, T: Array) -> tuple[_Parts, _Parts, Array]:
-    """The curves beside rows q (k, dof) towards aims T (k, ...), as `_follow` has them."""
-    return _follow(arm, _samples_beside(arm, q, T), T)
+def _followed(arm: _Arm, q: Array, T: Array) -> _Walked:
+    """The curves beside rows q (k, dof) towards aims T (k, ...)."""
+    _, pose = np.unique(T.reshape(len(T), -1), axis=0, return_inverse=True)
+    return _walked(arm, _samples_beside(arm, q, T), T, pose.reshape(-1))
 
 
 def _on_curves(arm: _Arm, parts: _Parts, owner: _Index, q: Array, T: Array) -> _Flags:
@@ -2073,74 +2283,12 @@ def _on_curves(arm: _Arm, parts: _Parts, owner: _Index, q: Array, T: Array) -> _
     chord = (parts.b.q - parts.a.q)[:, moving]
     way = _differences(arm, parts.a.q, q[row])[:, moving]
     share = (way * chord).sum(axis=1) / (chord**2).sum(axis=1)
-    near = np.abs(way - share[:, None] * chord).max(axis=1) < _near_continuum_BESIDE
+    near = np.abs(way - share[:, None] * chord).max(axis=1) < _curve_walks_BESIDE
     near &= (share > -_OVER) & (share < 1.0 + _OVER)
     row, parts = row[near], _some_of(parts, near)
-    at = _between(arm, parts, share[near], T)
-    for _ in range(_ROUNDS):
-        _, ahead, beside = _way(arm, at, q[row])
-        out[row[beside < _ON]] = True
-        going = (beside >= _ON) & (beside < ahead**2)
-        if not going.any():
-            break
-        at, row, parts = _some_of(at, going), row[going], _some_of(parts, going)
-        at.q[:, moving] += ahead[going, None] * at.still
-        at, _ = _sampled(arm, at, T[parts.owner])
+    on, _ = _reached(arm, _between(arm, parts, share[near], T), q[row], T[parts.owner])
+    out[row[on]] = True
     return out
-
-
-def _follow(arm: _Arm, first: _Reduced, T: Array) -> tuple[_Parts, _Parts, Array]:
-    """On from samples to both sides at once, the fastest joint by `policy.try_step` from one to the
-    next."""
-    count, moving = len(T), list(arm.moving)
-    back = first._replace(still=-first.still, out=-first.out, left=-first.left)
-    first, T = _joined(first, back), np.concatenate([T, T])
-    closed, worst = np.zeros(2 * count, dtype=bool), np.abs(first.left)
-    parts, ends, owner, b = [], [], np.arange(2 * count), first
-    astray, before = np.zeros(2 * count, dtype=np.intp), b.still
-    for step in range(_near_continuum_MOST):
-        ahead, course = b.q.copy(), 1.5 * b.still - 0.5 * before
-        ahead[:, moving] += arm.policy.try_step * course / np.abs(course).max(axis=1)[:, None]
-        c, near = _sampled(arm, b._replace(q=ahead), T[owner])
-        astray = np.where(near, 0, astray + 1)
-        left = np.abs(c.left)
-        on = left < arm.policy.fold_reach
-        place = np.where(owner < count, step, _near_continuum_MOST + step).astype(float)
-        passed = _Parts(b, c, owner, place, np.ones(len(owner)))
-        ends.append(_some_of(passed, ~on & (left < _BEYOND * arm.policy.fold_reach)))
-        on &= astray < _ASTRAY
-        parts.append(_some_of(passed, on))
-        b, c, owner, astray = _some_of(b, on), _some_of(c, on), owner[on], astray[on]
-        worst[owner] = np.maximum(worst[owner], np.abs(c.left))
-        closed[owner[_back(arm, _some_of(first, owner), b) & (step > 1)]] = True
-        going = ~(closed[owner] | closed[owner % count])
-        before = b.still[going]
-        b, owner, astray = _some_of(c, going), owner[going], astray[going]
-        if not len(owner):
-            break
-    closed[owner] = True
-    once = np.arange(2 * count) < count
-    once[count:] = ~closed[:count]
-    worst = np.maximum(worst[:count], np.where(once[count:], worst[count:], 0.0))
-    found, last = (_some_of(some, once[some.owner]) for some in (_joined(*parts), _joined(*ends)))
-    found, last = (some._replace(owner=some.owner % count) for some in (found, last))
-    return found, last, worst
-
-
-def _back(arm: _Arm, a: _Reduced, b: _Reduced) -> _Flags:
-    """Whether curves are at samples of them again, and not at other parts that are near."""
-    way, _, beside = _way(arm, a, b.q)
-    near = np.abs(way).max(axis=1) < 0.75 * arm.policy.try_step
-    same = (a.still * b.still).sum(axis=1) > _SAME_WAY
-    return np.asarray((beside < _near_continuum_BESIDE) & near & same)
-
-
-def _way(arm: _Arm, at: _Reduced, q: Array) -> tuple[Array, Array, Array]:
-    """The ways (k, n) from samples to rows q (k, dof), how far they go along the still direction (k,), and
-    how far beside that at most (k,)."""
-    way = _differences(arm, at.q, q)[:, list(arm.moving)]
-    along = (way * at.still).sum(axis=1)
-    return way, along, np.abs(way - along[:, None] * at.still).max(axis=1)
 
 
 # Where continua that the arm has go on inside the limits.
@@ -2163,10 +2311,10 @@ def _rows_along(
     aims T (k, ...), and whose they are (n,)."""
     marks = [*stands, *others]
     with np.errstate(all="ignore"):
-        parts, _, worst = _followed(arm, q, T)
+        parts, _, same, worst = _followed(arm, q, T)
         whole = np.bincount(parts.owner, minlength=len(q)) >= _LEAST
         whole &= worst < arm.policy.arrived
-        whose = np.array([k for k, _ in marks], dtype=np.intp)
+        whose = same[np.array([k for k, _ in marks], dtype=np.intp)]
         on = whole[whose]
         if on.any():
             rows = np.array([row for (_, row), some in zip(marks, on) if some])

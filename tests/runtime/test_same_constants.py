@@ -31,6 +31,7 @@ ALSO = {
     "rows/row_links": ("held/branch_links",),
     "rows/solution_rows": ("elimination/general_6r_runs",),
     "singular/curve_crossings": ("singular/near_continuum",),
+    "singular/curve_walks": ("singular/near_continuum",),
     "singular/limit_curves": ("singular/limit_curve",),
     "singular/meeting_rows": ("solving/row_starts",),
     "solving/pose_solving": ("solving/projection",),

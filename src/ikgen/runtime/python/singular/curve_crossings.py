@@ -15,7 +15,7 @@ from ikgen.runtime.python.singular.fold_pair import Reduced, flow_and_others, ke
 
 __all__ = ["beside_crossings"]
 
-_MOST = 4  # crossings of a curve
+_CROSSINGS = 4  # crossings of a curve
 _HALVES = 4  # by which they are found
 _ASIDE = 0.4  # rad or m: so far from a crossing curves are apart
 
@@ -32,7 +32,7 @@ def beside_crossings(arm: Arm, parts: Parts, T: Array) -> tuple[Index, Array]:
     sense = _keeps(arm, a, T[owner])
     crossing = np.flatnonzero(sense != _keeps(arm, b, T[owner]))
     crossing = crossing[np.argsort(owner[crossing], kind="stable")]
-    crossing = crossing[places(owner[crossing]) < _MOST]
+    crossing = crossing[places(owner[crossing]) < _CROSSINGS]
     if not len(crossing):
         return owner[:0], a.q[:0]
     parts, sense = some_of(parts, crossing), sense[crossing]

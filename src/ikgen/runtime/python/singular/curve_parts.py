@@ -86,7 +86,7 @@ def look_between(arm: Arm, q: Array, to: Array, T: Array) -> tuple[Index, Array]
     with np.errstate(all="ignore"):
         way, a, parts = differences(arm, q, to), samples_beside(arm, q, T), []
         for part in range(_PARTS):
-            b, _ = sampled(arm, a._replace(q=q + (part + 1) / _PARTS * way), T)
+            b = sampled(arm, a._replace(q=q + (part + 1) / _PARTS * way), T)[0]
             width = np.ones(len(q))
             parts.append(Parts(a, b, np.arange(len(q)), part * width, width))
             a = b

@@ -31,9 +31,9 @@ def samples_beside(arm: Arm, q: Array, T: Array) -> Reduced:
     return sampled(arm, Reduced(q, still, unknown, nothing, nothing), T)[0]
 
 
-def sampled(arm: Arm, at: Reduced, T: Array) -> tuple[Reduced, Flags]:
+def sampled(arm: Arm, at: Reduced, T: Array) -> tuple[Reduced, Flags, Flags]:
     """The configurations of curves beside some (k,), of which one direction of the error is left towards
-    aims T (k, ...); which seem to have a curve near (k,)."""
+    aims T (k, ...); which seem to have a curve near (k,), and which are on one (k,)."""
     near, going, before = np.ones(len(T), dtype=bool), np.arange(len(T)), np.full(len(T), np.inf)
     for _ in range(_CORRECTIONS):
         if len(going) == len(T):
@@ -49,4 +49,6 @@ def sampled(arm: Arm, at: Reduced, T: Array) -> tuple[Reduced, Flags]:
         going, before = going[on], moved.left[on]
         if not len(going):
             break
-    return at, near
+    converged = np.ones(len(T), dtype=bool)
+    converged[going] = False
+    return at, near, converged

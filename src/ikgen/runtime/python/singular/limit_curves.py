@@ -34,10 +34,10 @@ def rows_along(
     which `others` are on these continua too. `stands`, `others`: such rows of the aims."""
     marks = [*stands, *others]
     with np.errstate(all="ignore"):
-        parts, _, worst = followed(arm, q, T)
+        parts, _, same, worst = followed(arm, q, T)
         whole = np.bincount(parts.owner, minlength=len(q)) >= LEAST
         whole &= worst < arm.policy.arrived
-        whose = np.array([k for k, _ in marks], dtype=np.intp)
+        whose = same[np.array([k for k, _ in marks], dtype=np.intp)]
         on = whole[whose]
         if on.any():
             rows = np.array([row for (_, row), some in zip(marks, on) if some])

@@ -18,18 +18,15 @@ from ikgen.runtime.python.newton.refinement import least_singular
 from ikgen.runtime.python.rows.row_links import differences
 from ikgen.runtime.python.rows.solution_rows import places
 from ikgen.runtime.python.singular.curve_crossings import beside_crossings
-from ikgen.runtime.python.singular.curve_parts import BEYOND, Parts, between, look
-from ikgen.runtime.python.singular.curve_samples import sampled, samples_beside
-from ikgen.runtime.python.singular.fold_pair import Reduced
+from ikgen.runtime.python.singular.curve_parts import Parts, between, look
+from ikgen.runtime.python.singular.curve_samples import samples_beside
+from ikgen.runtime.python.singular.curve_walks import BESIDE, Walked, reached, walked
 
 __all__ = ["LEAST", "Traced", "followed", "on_curves", "rows_around", "trace"]
 
-_MOST = 96  # samples to a side of a curve
 LEAST = 4
 """Samples of what is a curve."""
-_ASTRAY = 4  # samples in a row that show that no curve is near
-_BESIDE, _SAME_WAY = 0.06, 0.9
-_OVER, _ON, _ROUNDS = 0.05, 1e-6, 3  # of a part; rad or m off it
+_OVER = 0.05  # of a part
 
 
 class Traced(NamedTuple):
@@ -65,31 +62,32 @@ def rows_around(arm: Arm, q: Array, T: Array, broken: Flags) -> tuple[Flags, Ind
 
 def trace(arm: Arm, q: Array, T: Array) -> Traced:
     """The curves through rows q (k, dof) towards aims T (k, ...), once around, or to both their ends, and
-    others that cross broken ones; of equal ones one is followed."""
+    others that cross broken ones; of rows on the same curve one is followed."""
     asked = np.concatenate([q, T.reshape(len(q), -1)], axis=1)
     _, first, again = np.unique(asked, axis=0, return_index=True, return_inverse=True)
     again = again.reshape(-1)
-    curve, broken, owner, rows = _traced(arm, q[first], T[first])
+    same, curve, broken, owner, rows = _traced(arm, q[first], T[first])
+    again = same[again]
     begin, end = np.searchsorted(owner, again), np.searchsorted(owner, again, side="right")
     whose = np.repeat(np.arange(len(q)), end - begin)
     return Traced(curve[again], broken[again], whose, rows[begin[whose] + places(whose)])
 
 
-def _traced(arm: Arm, q: Array, T: Array) -> Traced:
-    """`trace` of rows that differ."""
-    parts, ends, worst = followed(arm, q, T)
-    steps, broken = _kinds(arm, parts, worst)
-    here, last = some_of(parts, broken[parts.owner]), some_of(ends, broken[ends.owner])
+def _traced(arm: Arm, q: Array, T: Array) -> tuple[Index, Flags, Flags, Index, Array]:
+    """`trace` of rows that differ, behind the first row (k,) on the curve of each."""
+    curves = followed(arm, q, T)
+    steps, broken = _kinds(arm, curves)
+    here, last = (some_of(some, broken[some.owner]) for some in curves[:2])
     found = look(arm, joined(here, last, _crossing_parts(arm, here, T)), T, steps)
-    return Traced(steps >= LEAST, broken, *found)
+    return curves.same, steps >= LEAST, broken, *found
 
 
-def _kinds(arm: Arm, parts: Parts, worst: Array) -> tuple[Index, Flags]:
-    """How many samples (k,) there are of what was followed, with the most (k,) that is left there, and
-    which are curves of the solved geometry that the file's arm has not."""
-    steps = np.bincount(parts.owner, minlength=len(worst))
+def _kinds(arm: Arm, curves: Walked) -> tuple[Index, Flags]:
+    """How many samples there are of each curve (k,), and which are curves of the solved geometry that the
+    file's arm has not."""
+    steps = np.bincount(curves.parts.owner, minlength=len(curves.worst))
     curve = steps >= LEAST
-    broken = curve & (worst >= arm.policy.arrived)
+    broken = curve & (curves.worst >= arm.policy.arrived)
     return steps, broken
 
 
@@ -104,15 +102,16 @@ def _crossing_parts(arm: Arm, parts: Parts, T: Array) -> Parts:
     first, owner = some_of(first, fresh), owner[fresh]
     if not len(owner):
         return none
-    more, ends, worst = _follow(arm, first, T[owner])
-    _, broken = _kinds(arm, more, worst)
-    out: Parts = joined(*(some_of(some, broken[some.owner]) for some in (more, ends)))
+    curves = walked(arm, first, T[owner], owner)
+    _, broken = _kinds(arm, curves)
+    out: Parts = joined(*(some_of(some, broken[some.owner]) for some in curves[:2]))
     return out._replace(owner=owner[out.owner])
 
 
-def followed(arm: Arm, q: Array, T: Array) -> tuple[Parts, Parts, Array]:
-    """The curves beside rows q (k, dof) towards aims T (k, ...), as `_follow` has them."""
-    return _follow(arm, samples_beside(arm, q, T), T)
+def followed(arm: Arm, q: Array, T: Array) -> Walked:
+    """The curves beside rows q (k, dof) towards aims T (k, ...)."""
+    _, pose = np.unique(T.reshape(len(T), -1), axis=0, return_inverse=True)
+    return walked(arm, samples_beside(arm, q, T), T, pose.reshape(-1))
 
 
 def on_curves(arm: Arm, parts: Parts, owner: Index, q: Array, T: Array) -> Flags:
@@ -123,72 +122,9 @@ def on_curves(arm: Arm, parts: Parts, owner: Index, q: Array, T: Array) -> Flags
     chord = (parts.b.q - parts.a.q)[:, moving]
     way = differences(arm, parts.a.q, q[row])[:, moving]
     share = (way * chord).sum(axis=1) / (chord**2).sum(axis=1)
-    near = np.abs(way - share[:, None] * chord).max(axis=1) < _BESIDE
+    near = np.abs(way - share[:, None] * chord).max(axis=1) < BESIDE
     near &= (share > -_OVER) & (share < 1.0 + _OVER)
     row, parts = row[near], some_of(parts, near)
-    at = between(arm, parts, share[near], T)
-    for _ in range(_ROUNDS):
-        _, ahead, beside = _way(arm, at, q[row])
-        out[row[beside < _ON]] = True
-        going = (beside >= _ON) & (beside < ahead**2)
-        if not going.any():
-            break
-        at, row, parts = some_of(at, going), row[going], some_of(parts, going)
-        at.q[:, moving] += ahead[going, None] * at.still
-        at, _ = sampled(arm, at, T[parts.owner])
+    on, _ = reached(arm, between(arm, parts, share[near], T), q[row], T[parts.owner])
+    out[row[on]] = True
     return out
-
-
-def _follow(arm: Arm, first: Reduced, T: Array) -> tuple[Parts, Parts, Array]:
-    """On from samples to both sides at once, the fastest joint by `policy.try_step` from one to the next;
-    the parts to one side, and to the other of what does not come back to where it began; those behind
-    which too much is left; the most (k,) that is left before."""
-    count, moving = len(T), list(arm.moving)
-    back = first._replace(still=-first.still, out=-first.out, left=-first.left)
-    first, T = joined(first, back), np.concatenate([T, T])
-    closed, worst = np.zeros(2 * count, dtype=bool), np.abs(first.left)
-    parts, ends, owner, b = [], [], np.arange(2 * count), first
-    astray, before = np.zeros(2 * count, dtype=np.intp), b.still
-    for step in range(_MOST):
-        ahead, course = b.q.copy(), 1.5 * b.still - 0.5 * before
-        ahead[:, moving] += arm.policy.try_step * course / np.abs(course).max(axis=1)[:, None]
-        c, near = sampled(arm, b._replace(q=ahead), T[owner])
-        astray = np.where(near, 0, astray + 1)
-        left = np.abs(c.left)
-        on = left < arm.policy.fold_reach
-        place = np.where(owner < count, step, _MOST + step).astype(float)
-        passed = Parts(b, c, owner, place, np.ones(len(owner)))
-        ends.append(some_of(passed, ~on & (left < BEYOND * arm.policy.fold_reach)))
-        on &= astray < _ASTRAY
-        parts.append(some_of(passed, on))
-        b, c, owner, astray = some_of(b, on), some_of(c, on), owner[on], astray[on]
-        worst[owner] = np.maximum(worst[owner], np.abs(c.left))
-        closed[owner[_back(arm, some_of(first, owner), b) & (step > 1)]] = True
-        going = ~(closed[owner] | closed[owner % count])
-        before = b.still[going]
-        b, owner, astray = some_of(c, going), owner[going], astray[going]
-        if not len(owner):
-            break
-    closed[owner] = True
-    once = np.arange(2 * count) < count
-    once[count:] = ~closed[:count]
-    worst = np.maximum(worst[:count], np.where(once[count:], worst[count:], 0.0))
-    found, last = (some_of(some, once[some.owner]) for some in (joined(*parts), joined(*ends)))
-    found, last = (some._replace(owner=some.owner % count) for some in (found, last))
-    return found, last, worst
-
-
-def _back(arm: Arm, a: Reduced, b: Reduced) -> Flags:
-    """Whether curves are at samples of them again, and not at other parts that are near."""
-    way, _, beside = _way(arm, a, b.q)
-    near = np.abs(way).max(axis=1) < 0.75 * arm.policy.try_step
-    same = (a.still * b.still).sum(axis=1) > _SAME_WAY
-    return np.asarray((beside < _BESIDE) & near & same)
-
-
-def _way(arm: Arm, at: Reduced, q: Array) -> tuple[Array, Array, Array]:
-    """The ways (k, n) from samples to rows q (k, dof), how far they go along the still direction (k,), and
-    how far beside that at most (k,)."""
-    way = differences(arm, at.q, q)[:, list(arm.moving)]
-    along = (way * at.still).sum(axis=1)
-    return way, along, np.abs(way - along[:, None] * at.still).max(axis=1)
