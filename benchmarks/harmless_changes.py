@@ -73,7 +73,7 @@ HARMLESS = (
     ),
     HarmlessChange(
         "runtime/python/singular/curve_parts.py",
-        "way[going[leaps | (np.abs(c.left) > most[going])]] = 0.0",
+        "way[going[np.abs(c.left) > most[going]]] = 0.0",
         ">", ">=", _EQUAL,
     ),
     HarmlessChange(

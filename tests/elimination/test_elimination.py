@@ -50,6 +50,8 @@ def arm_frames(name: str) -> Array:
         return dh_frames([0, -h, 0, h, h, -h], [0, 0.12893, 0.8382, 0.064, 0, 0], d)
     if name == "KawasakiRS05L":
         return dh_frames([0, h, 0, -h, -h, h], [0, 105, 330, 80, 0, 0], [0, 0, 0, 0, 410.0, 0])
+    if name == "equal links":  # of a snake: some equations depend on each other at all poses
+        return dh_frames([0, h, -h, h, -h, h], [0.06] * 6, [0] * 6)
     if name.startswith("random"):
         rng = np.random.default_rng(int(name.split()[1]))
         alpha, a, d = rng.uniform(-1.5, 1.5, 6), rng.uniform(-1, 1, 6), rng.uniform(-1, 1, 6)

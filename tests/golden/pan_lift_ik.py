@@ -1352,7 +1352,7 @@ _BENT = 1.5  # over its bend: a cubic that is lower in the middle of a part may 
 _STRAIGHT = 0.03  # over its largest value: a cubic that bends by less is straight
 _CUBICS, _NEWTON = 2, 4  # first steps that go to roots of cubics, and Newton's steps to these
 _CLEAR = 1e-6  # rad, or m over the arm's size, that is left in a part: with less, cubics are of round-off
-_LEAP, _SOON = 16.0, 3  # times what it changes beside: a leap, if it does so after so many steps
+_SOON = 6  # steps in which the product of what is left at both ends has to halve
 _PARTS = 4  # in which one is looked at whose ends alone tell little
 _SAMPLES = 600  # of a curve
 _ROOM = 32  # solutions of a curve
@@ -1421,9 +1421,8 @@ def _between(arm: _Arm, parts: _Parts, share: Array, T: Array) -> _Reduced:
     """Samples at a `share` (n,) of the way from a to b, near the cubic with the directions at both."""
     a, b, s, moving = parts.a, parts.b, share[:, None], list(arm.moving)
     way = (b.q - a.q)[:, moving]
-    length = np.sqrt((way**2).sum(axis=1))[:, None]
+    rise, fall = ((way * end.still).sum(axis=1)[:, None] * end.still - way for end in (a, b))
     along = ((a.still * b.still).sum(axis=1) > 0.0)[:, None]
-    rise, fall = (np.where(along, length * end.still - way, 0.0) for end in (a, b))
     q = a.q + s * (b.q - a.q)
     q[:, moving] += s * (1.0 - s) * ((1.0 - s) * rise - s * fall)
     still = np.where(along, (1.0 - s) * a.still + s * b.still, a.still)
@@ -1464,9 +1463,13 @@ def _closed_in(arm: _Arm, parts: _Parts, T: Array) -> _Parts:
     there is."""
     ends = _Reduced(*map(np.stack, zip(parts.a, parts.b)))
     values, last = ends.left.copy(), np.full(len(parts.owner), -1)
-    way = np.full(len(parts.owner), np.inf)
+    way, goal = np.full((2, len(parts.owner)), np.inf)
     most = 2.0 * np.abs(_bernstein(arm, parts)).max(axis=0)
     for step in range(_STEPS):
+        if step % _SOON == 0:
+            product = np.abs(ends.left[0] * ends.left[1])
+            way[product > goal] = 0.0
+            goal = 0.5 * product
         going = np.flatnonzero((np.abs(ends.left).min(axis=0) > _curve_parts_ROUND_OFF) & (way > _WAY))
         if not len(going):
             break
@@ -1480,10 +1483,7 @@ def _closed_in(arm: _Arm, parts: _Parts, T: Array) -> _Parts:
         c = _between(arm, now, share, T)
         side = (now.a.left * c.left < 0.0).astype(np.intp)
         way[going] = np.abs(c.q - ends.q[side, going]).max(axis=1)
-        change = np.abs(np.diff(cubic, axis=0))
-        leaps = change[1] > _LEAP * np.maximum(change[0], change[2])
-        leaps &= (np.abs(ends.left[:, going]).min(axis=0) > arm.policy.arrived) & (step > _SOON)
-        way[going[leaps | (np.abs(c.left) > most[going])]] = 0.0
+        way[going[np.abs(c.left) > most[going]]] = 0.0
         for whole, part in zip(ends, c):
             whole[side, going] = part
         values[side, going] = c.left

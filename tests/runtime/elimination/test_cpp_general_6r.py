@@ -20,7 +20,9 @@ from ikgen.elimination.resultant import RESULTANTS, root_shifts
 
 Array = NDArray[np.float64]
 OLD_CASTS = "-Wold-style-cast"
-NAMES = ["random 1", "random 2", "Issue4", "KawasakiRS05L", "bravo7", "fanuc_crx10ia", "xarm6"]
+NAMES = [
+    "random 1", "random 2", "Issue4", "KawasakiRS05L", "equal links", "bravo7", "fanuc_crx10ia", "xarm6"
+]  # fmt: skip
 SOLVE = r"""
 #include "elimination/general_6r.hpp"
 #include "numbers.hpp"

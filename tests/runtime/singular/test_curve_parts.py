@@ -40,7 +40,7 @@ def on_line(x: Array, roots: Array) -> Reduced:
 
 
 def test_samples_between_two_begin_near_the_curve(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of a circle: a chord is 0.02 off it."""
+    """Of a circle: a chord is 0.02 off it. Whatever the sense of the directions at both ends."""
     plane: Any = SimpleNamespace(moving=(0, 1))
     give(monkeypatch, lambda at: at)
 
@@ -54,7 +54,11 @@ def test_samples_between_two_begin_near_the_curve(monkeypatch: pytest.MonkeyPatc
     assert middle.still == pytest.approx(on_circle(0.2).still, abs=1e-12)
     turned = parts._replace(b=parts.b._replace(still=-parts.b.still))
     middle = curve_parts.between(plane, turned, np.array([0.5]), np.zeros((1, 4, 4)))
-    assert middle.q == pytest.approx(0.5 * (parts.a.q + parts.b.q))
+    assert np.abs(middle.q - on_circle(0.2).q).max() < 2e-3
+    back = curve_parts.between(
+        plane, between(parts.b, parts.a), np.array([0.5]), np.zeros((1, 4, 4))
+    )
+    assert back.q == pytest.approx(middle.q)
 
 
 @pytest.mark.parametrize(
@@ -202,3 +206,35 @@ def test_two_solutions_are_found_that_the_cubic_between_others_hides(
     ends = between(on_line(q[:, 0], roots), on_line(to[:, 0], roots))
     _, few = look(line, ends, np.zeros((1, 4, 4)), np.zeros(1, np.intp))
     assert np.abs(few[:, 0]).min() > 0.9
+
+
+def test_a_root_is_closed_in_against_the_sense_of_samples_too(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """In few steps, on a circle in a plane."""
+    plane: Any = SimpleNamespace(moving=(0, 1), policy=POLICY, placing=(WHOLE_TURN,) * 2)
+    counts = []
+
+    def on_circle(at: Reduced) -> Reduced:
+        counts.append(len(at.q))
+        angle = np.arctan2(at.q[:, 1], at.q[:, 0])
+        c, s = np.cos(angle), np.sin(angle)
+        tangent = np.stack([-s, c], axis=1)
+        sense = np.sign((tangent * at.still).sum(axis=1))[:, None]
+        rise = np.cos(angle - 0.3) * sense[:, 0]
+        q, still = np.stack([c, s], axis=1), sense * tangent
+        return Reduced(q, still, at.out, np.sin(angle - 0.3), rise)
+
+    give(monkeypatch, on_circle)
+    for sense in (1.0, -1.0):
+        places = np.array([[1.0, 0.0], [np.cos(0.5), np.sin(0.5)]])
+        stills = sense * np.array([[0.0, 1.0], [-np.sin(0.5), np.cos(0.5)]])
+        none = np.zeros(1)
+        a, b = (
+            on_circle(Reduced(q[None], still[None], np.ones((1, 1)), none, none))
+            for q, still in zip(places, stills, strict=True)
+        )
+        counts.clear()
+        _, found = look(plane, between(a, b), np.zeros((1, 4, 4)), np.zeros(1, np.intp))
+        assert found == pytest.approx(np.array([[np.cos(0.3), np.sin(0.3)]]), abs=1e-12)
+        assert len(counts) < 8

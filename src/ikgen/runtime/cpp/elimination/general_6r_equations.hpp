@@ -6,6 +6,7 @@
 #include <cstddef>
 
 #include "elimination/general_6r_frames.hpp"
+#include "elimination/pivoted_qr.hpp"
 #include "arrays/lanes.hpp"
 #include "arrays/reflections.hpp"
 
@@ -146,6 +147,26 @@ inline void sample_right(const Loop& loop, Mat<14, 3>& right) noexcept {
     for (Index k = 0; k < 3; ++k) right(r, k) = u(r, k);
 }
 
+// A unit vector n with n^T (x + i y) = 0, by reflections of its real and imaginary parts: where links of the same lengths
+// leave the pairs' columns dependent, minors do not tell it.
+inline std::array<Complex, 4> null_by_reflections(const Mat<14, 3>& right) noexcept {
+  Mat<8, 6> columns;
+  for (Index i = 0; i < 4; ++i)
+    for (Index k = 0; k < 3; ++k) {
+      columns(i, k) = columns(4 + i, 3 + k) = right(i, k);
+      columns(i, 3 + k) = right(4 + i, k);
+      columns(4 + i, k) = -right(4 + i, k);
+    }
+  std::array<double, 8> x{};
+  x[7] = 1.0;
+  PivotedQr<8, 6>(columns).turn_back(x);
+  std::array<Complex, 4> n;
+  for (Index i = 0; i < 4; ++i) n[i] = Complex(x[i], x[4 + i]);
+  return n;
+}
+
+inline constexpr double kDependent = 1e-3;  // minors over the columns' lengths, below which they lose too many digits
+
 inline std::array<Complex, 4> null_of_pairs(const Mat<14, 3>& right) noexcept {  // by minors
   const auto times = [](Complex x, Complex y) {  // without the library's care for infinities
     return Complex(x.real() * y.real() - x.imag() * y.imag(), x.real() * y.imag() + x.imag() * y.real());
@@ -158,13 +179,16 @@ inline std::array<Complex, 4> null_of_pairs(const Mat<14, 3>& right) noexcept { 
       minors[i][j] = -minors[j][i];
     }
   std::array<Complex, 4> n;
-  double norm = 1e-300;
+  double norm = 1e-300, most = kDependent * kDependent;
   for (Index r = 0; r < 4; ++r) {
     const Index i = r == 0 ? 1 : 0, j = r <= 1 ? 2 : 1, k = r <= 2 ? 3 : 2;
     n[r] = times(at(i, 0), minors[j][k]) - times(at(j, 0), minors[i][k]) + times(at(k, 0), minors[i][j]);
     if (r % 2 == 1) n[r] = -n[r];
     norm += std::norm(n[r]);
   }
+  for (Index j = 0; j < 3; ++j)
+    most *= std::norm(at(0, j)) + std::norm(at(1, j)) + std::norm(at(2, j)) + std::norm(at(3, j));
+  if (!(norm > most)) return null_by_reflections(right);
   const double over = 1.0 / std::sqrt(norm);
   for (Complex& x : n) x *= over;
   return n;
