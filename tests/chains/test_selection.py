@@ -124,6 +124,18 @@ def test_default_base_lies_below_a_floating_joint():
     assert (only.base, only.dof) == ("l2", 3)
 
 
+def test_joints_above_a_floating_one_are_told():
+    types = ["revolute", "fixed", "prismatic", "planar", "revolute", "revolute", "revolute"]
+    (only,) = candidate_chains(serial(*types))
+    assert only.joints == ("j5", "j6", "j7")
+    assert only.left_out == (
+        "'j1', 'j3' lie above the planar joint 'j4', through which no chain goes: left out; --tip l3 ends "
+        "one before it"
+    )
+    (mobile,) = candidate_chains(serial("planar", "revolute", "revolute"))
+    assert not mobile.left_out
+
+
 def test_given_ends_are_taken_as_they_are():
     tree = serial("revolute", "revolute", "revolute", "fixed")
     chain = select_chain(tree, "l1", "l3")

@@ -92,3 +92,11 @@ def test_cmake_holds_it(robot: Path) -> None:
         assert done.returncode == 0, done.stdout + done.stderr
     (made,) = robot.parent.glob("b/**/arm_ik.py")
     holds_the_angle(made, -0.5)
+
+
+def test_the_arm_angle_in_another_spelling_is_told(
+    robot: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for written in ("arm_angle", "armangle"):
+        assert run(["from-urdf", str(robot), "--free", written]) == 2
+        assert "the arm angle is --free arm-angle" in capsys.readouterr().err

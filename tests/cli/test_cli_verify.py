@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shlex
 import shutil
 import subprocess
 import sys
@@ -218,6 +219,25 @@ def test_another_robot(project: Path) -> None:
     shutil.copy(KUKA, project / "copy.urdf")
     (project / "arm.urdf").unlink()
     assert check("out", "--robot", "copy.urdf") == 0
+
+
+def test_where_the_description_is_now_is_asked_for(
+    project: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (project / "arm.urdf").rename(project / "moved.urdf")
+    assert check("out") == 2
+    said = capsys.readouterr().err
+    assert "arm.urdf: no such file" in said and "hint: ikgen verify out --robot FILE" in said
+
+
+def test_the_command_that_replaces_outputs_of_another_robot_is_told(
+    project: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    other = KUKA.with_name("abb_irb2400.urdf")
+    assert check("out", "--robot", str(other)) == 1
+    (hint,) = (s for s in capsys.readouterr().err.splitlines() if s.startswith("hint: ikgen from"))
+    assert run([*shlex.split(hint)[2:], "--no-verify"]) == 0
+    assert check("out", "--robot", str(other)) == 0
 
 
 def test_junit_and_annotations(

@@ -323,3 +323,18 @@ def test_a_name_without_a_number_is_a_length_or_an_angle(tmp_path: Path) -> None
     assert caught.value.line == path.read_text().splitlines().index('alpha = "beta"') + 1
     path.write_text(f'name = "arm"\nconvention = "standard"\n[parameters]\nbeta = 0.3\n{rows}')
     assert [one.name for one in read_dh_table(path)[1].joints] == ["theta_1", "theta_2"]
+
+
+def test_degrees_and_millimetres_are_told(tmp_path: Path) -> None:
+    path = tmp_path / "table.toml"
+    rows = [("0", "0"), ("-90", "431.8"), ("0", "20.3"), ("pi/2", "0")]
+    table = "\n".join(
+        f'[[joints]]\nname = "j{i}"\ntype = "revolute"\nalpha = "{alpha}"\na = "{a}"\nd = "0"\n'
+        for i, (alpha, a) in enumerate(rows)
+    )
+    path.write_text(f'convention = "modified"\n{table}')
+    found = [str(one) for one in read_dh_table(path)[0].warnings]
+    assert any("joint 2: alpha = -90 looks like degrees: taken as rad" in one for one in found)
+    assert any("lengths up to 431.8 m look like mm: kept as they are" in one for one in found)
+    path.write_text(f'convention = "modified"\n{table}'.replace("431.8", "0.4").replace("-90", "1"))
+    assert not any("look" in str(one) for one in read_dh_table(path)[0].warnings)

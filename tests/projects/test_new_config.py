@@ -116,10 +116,26 @@ def test_arms_are_added_to_a_config(tmp_path: Path) -> None:
     assert [arm.name for arm in load_config(path)] == [first.name, added.name]
     assert added.name == f"{first.name}_2"
     assert load_config(path)[1].outputs.emit == ("cpp",)
-    with pytest.raises(UsageError, match=f"lists {first.name} already"):
+    with pytest.raises(UsageError, match=f"lists this arm already, as {first.name}"):
         add_to_config(path, table, robot_arms(table), ["python"])
     with pytest.raises(UsageError, match="not of ikgen alone"):
         add_to_config(tmp_path / "pyproject.toml", table, robot_arms(table), ["python"])
+
+
+def test_variants_of_one_description_are_arms_of_their_own(tmp_path: Path) -> None:
+    robot, path = tmp_path / "arm.urdf.xacro", config_path(tmp_path)
+    robot.write_text(
+        '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="one">'
+        '<xacro:arg name="variant" default="short"/><link name="waist_link"/>'
+        f"{branch('m', ('x', 'y', 'z', 'end'))}</robot>"
+    )
+    written(Request(robot), path)
+    other = Request(robot, args={"variant": "long"})
+    (added,) = add_to_config(path, other, robot_arms(other), ["python"])
+    names = [arm.name for arm in load_config(path)]
+    assert names[1] == added.name != names[0]
+    with pytest.raises(UsageError, match=f"lists this arm already, as {added.name}"):
+        add_to_config(path, other, robot_arms(other), ["python"])
 
 
 def test_another_chain_of_a_robot_is_added_by_its_tip(tmp_path: Path) -> None:

@@ -28,6 +28,22 @@ def poses(n: int) -> np.ndarray:
     return np.concatenate([runner.forward(q), far[None]])
 
 
+def test_a_map_of_another_arm_is_refused() -> None:
+    from types import SimpleNamespace
+
+    from ikgen.cli.view_command import _check_map
+    from ikgen.errors import UsageError
+
+    dh: Any = SimpleNamespace(robot="one", base_link="base", tip_link="tip")
+    found: Any = SimpleNamespace(robot="one", base="base", tip="tip")
+    _check_map(found, dh)
+    found.tip = "hand"
+    with pytest.raises(
+        UsageError, match="the map is of one, base to hand, not of one, base to tip"
+    ):
+        _check_map(found, dh)
+
+
 def test_quaternions_and_rotations() -> None:
     for q in np.random.default_rng(0).normal(size=(50, 4)):
         R = rotation(q)

@@ -18,6 +18,7 @@ from ikgen.chains.grippers import ARM_JOINTS, ArmLinks, arm_links
 from ikgen.chains.link_names import NO_RANK, base_rank, is_finger_part, is_head, is_sensor, tip_rank
 from ikgen.chains.rigid_bodies import RigidBodies
 from ikgen.importers.urdf.topology import TreeIndex
+from ikgen.model.counted import listed
 from ikgen.model.joint_tree import Joint, JointTree, JointType
 
 __all__ = ["ChainCandidate", "candidate_chains", "conventional_base"]
@@ -28,7 +29,8 @@ class ChainCandidate:
     """One chain of a tree: its ends, its moving joints from base to tip, and why it was chosen.
 
     `dof` counts independent joints: a mimic joint follows its driver. `left_out` says which joint behind
-    the tip is taken for a gripper's where it may be the arm's ("": none). `followers`: what those of the
+    the tip is taken for a gripper's where it may be the arm's, and which lie above a joint that floats or
+    moves in a plane ("": none). `followers`: what those of the
     joints follow that follow another one. `other_tips` are the links fixed to the tip, nearest to the joint
     first: the same joints place them.
     """
@@ -91,7 +93,8 @@ def _branches(index: TreeIndex, root: str, base: str | None) -> Iterator[ChainCa
         start = conventional_base(index, root, tip) if base is None else base
         joints = _moving(index.path(start, tip) or ())
         if joints:
-            left_out = _left_out(arms.doubtful.get(hub, ()))
+            above = _above_floating(index.path(root, tip) or ()) if base is None else ""
+            left_out = "; ".join(filter(None, (_left_out(arms.doubtful.get(hub, ())), above)))
             follow = _followers(joints)
             how = (_names(joints), _dof(joints), why, left_out, follow)
             yield ChainCandidate(start, tip, *how, tuple(link for link in body if link != tip))
@@ -108,6 +111,20 @@ def _left_out(joints: Sequence[Joint]) -> str:
         )
     tip = shlex.quote(first.child)
     return f"{names} are left out as a gripper's joints: --tip {tip} keeps '{first.name}'"
+
+
+def _above_floating(path: Sequence[Joint]) -> str:
+    """That joints of a path move above one that no chain goes through."""
+    end = _after_floating(path)
+    above = _names(_moving(path[:end]))
+    if not above:
+        return ""
+    last = path[end - 1]
+    names = listed([f"'{name}'" for name in above])
+    return (
+        f"{names} {'lies' if len(above) == 1 else 'lie'} above the {last.type.value} joint '{last.name}', "
+        f"through which no chain goes: left out; --tip {shlex.quote(last.parent)} ends one before it"
+    )
 
 
 def _best_tip(bodies: RigidBodies, body: Sequence[str], arms: ArmLinks) -> tuple[str, str]:

@@ -140,7 +140,7 @@ def _check(
             for arm, reason in zip(arms, reasons, strict=True)
         ]
         result: dict[str, Any] = {"stale": bool(code), "arms": rows}
-        _echo(result, code, f"{sum(map(bool, reasons))} arms are stale", mending(path, arms))
+        _echo(result, code, f"{counted(sum(map(bool, reasons)), 'arm')} stale", mending(path, arms))
     elif not quiet:
         names = [arm.name for arm in arms]
         click.echo("\n".join(stale_lines(list(zip(names, reasons, strict=True)))))

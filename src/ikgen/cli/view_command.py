@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 import webbrowser
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -14,6 +14,10 @@ from ikgen.cli.options import chain_options
 from ikgen.cli.parameter_types import GivenPath, RobotFile
 from ikgen.cli.request_options import make_request
 from ikgen.errors import UsageError
+
+if TYPE_CHECKING:
+    from ikgen.model.dh import DHChain
+    from ikgen.reach.reach_map import ReachMap
 
 __all__ = ["view"]
 
@@ -60,6 +64,8 @@ def view(
     request = make_request(robot, **chain)
     with Console(quiet=quiet, verbose=verbose) as console:
         derivation = derive(request, console)
+        if found is not None:
+            _check_map(found, derivation.reading.dh)
         runner = solver_of(derivation)
         if runner is None:
             raise UsageError(
@@ -74,3 +80,13 @@ def view(
         webbrowser.open(address)
     while True:
         time.sleep(3600)
+
+
+def _check_map(found: ReachMap, dh: DHChain) -> None:
+    """Raises `UsageError` for a map of another arm."""
+    shown, mapped = (dh.robot, dh.base_link, dh.tip_link), (found.robot, found.base, found.tip)
+    if shown != mapped:
+        names = [f"{robot}, {base} to {tip}" for robot, base, tip in (mapped, shown)]
+        raise UsageError(
+            f"the map is of {names[0]}, not of {names[1]}", hint="make one by ikgen reach"
+        )

@@ -19,10 +19,12 @@ def announcements(derivation: Derivation) -> tuple[str, ...]:
     """What was odd in the file, that the task is not the first that fits, that it asks more than the
     arm can do, or than its name says, that the tip lies on the last axis where the task tells of it, and
     why joints of an arm with six at most are held, and that some which it needs hardly move."""
+    reading = derivation.reading
+    table = reading.source.kind == "dh-table"
     told = (
         _passed_over(derivation),
         _over_constrained(derivation) or _tilting(derivation),
-        tip_on_axis(derivation.reading.dh, derivation.task) if derivation.chosen else "",
+        tip_on_axis(reading.dh, derivation.task, table) if derivation.chosen else "",
         lost_freedom(derivation.reading, ()) if derivation.held else "",
         idle_warning(derivation.reading.dh, derivation.task),
     )

@@ -267,7 +267,7 @@ def _check_locks(request: Request, joints: Iterable[Joint | ActuatedJoint]) -> N
             raise UsageError(
                 f"--lock {joint.name}={value:.9g}: outside the joint's limits, "
                 f"{limits.lower:.9g} to {limits.upper:.9g}",
-                hint="give a value inside them (rad or m)",
+                hint="give a value inside them: in rad or m, or with its unit, as 45deg or 120mm",
             )
 
 

@@ -42,7 +42,7 @@ def _choices(joint: ActuatedJoint, value: float | None, length: float) -> tuple[
             return (value,)
         raise UsageError(
             f"--free {joint.name}={value:.9g}: outside its limits, {low:.9g} to {high:.9g}",
-            hint="give a value inside them (rad or m), or none",
+            hint="give a value inside them: in rad or m, or with its unit, as 45deg or 120mm; or none",
         )
     if hardly_moves(joint, length):
         return (0.5 * (low + high),)

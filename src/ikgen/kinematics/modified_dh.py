@@ -43,7 +43,9 @@ def to_dh(
     names = [joint.name for joint in chain.joints]
     for name in free:
         if name not in (*names, ARM_ANGLE_OPTION):
-            raise UnknownNameError("joint in the chain", name, names)
+            meant = name.replace("_", "-") in (ARM_ANGLE_OPTION, ARM_ANGLE_OPTION.replace("-", ""))
+            hint = f"the arm angle is --free {ARM_ANGLE_OPTION}" if meant else ""
+            raise UnknownNameError("joint in the chain", name, names, hint=hint)
     angle, length = max(angle_tolerance, WRITTEN_IN_FULL), max(length_tolerance, ROUND_OFF)
     rounded = _derive(chain, Tolerance(angle, length, angle), free)
     if max(rounded.deviation) <= WRITTEN_IN_FULL:

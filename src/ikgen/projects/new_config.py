@@ -150,18 +150,23 @@ def add_to_config(
             f"{path} is not of ikgen alone", hint="write its [[tool.ikgen.arm]] by hand"
         )
     there = load_config(path)
-    known = {(_place(one.request.robot), one.request.base, one.request.tip) for one in there}
+    known = {_chain_of(one.request, one.request.base, one.request.tip): one.name for one in there}
     for arm in arms:
-        if (_place(request.robot), arm.base, arm.tip) in known:
+        if name := known.get(_chain_of(request, arm.base, arm.tip)):
             raise UsageError(
-                f"{path} lists {arm.name} already",
-                hint="change its entry there, or name another by -o",
+                f"{path} lists this arm already, as {name}",
+                hint="change its entry there, or name another config by -o",
             )
     arms = _told_apart(arms, [one.name for one in there])
     tables = ["", *(_table(arm, request, emit, path.parent) for arm in arms)]
     before = path.read_text(encoding="utf-8").rstrip("\n") + "\n"
     publish(path.parent, {path.name: before + "\n".join(tables)})
     return tuple(arms)
+
+
+def _chain_of(request: Request, base: str | None, tip: str | None) -> tuple[object, ...]:
+    """What tells one arm of a description, with its arguments, from another."""
+    return _place(request.robot), tuple(sorted(request.args.items())), base, tip
 
 
 def _place(robot: Path) -> Path:

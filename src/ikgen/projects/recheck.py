@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -9,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from ikgen.derivation.progress import Progress, silent
 from ikgen.derivation.read import read
-from ikgen.errors import UnknownNameError, UsageError
+from ikgen.errors import BadDescriptionError, UnknownNameError, UsageError
 from ikgen.generation.emitters import solver_files
 from ikgen.importers.named_robots import is_named
 from ikgen.outputs.journal import half_in_place
@@ -46,9 +47,12 @@ def recheck(
     take part where there are many samples, and `done` is told how many of their blocks are ready.
     Raises `IkgenError` where the description cannot be read.
     """
-    fix = command or record.command(robot)
+    made = record.command(robot)
+    forced = command or f"{made} --force"
+    fix = command or (made if robot is None else forced)  # they may be of another robot
     request = replace(record.again(robot), trust=trust)
-    forced = command or f"{fix} --force"
+    if robot is None and not (is_named(request.robot) or request.robot.exists()):
+        raise _gone(record, request.robot)
     findings = [*_edited(record, forced), *_left_over(record)]
     progress("read", str(request.robot))
     try:
@@ -57,11 +61,19 @@ def recheck(
         if not (is_named(request.robot) or request.robot.is_file()):
             raise
         message = f"made from another description: {error.message}"
-        return Recheck(record.path, record, (*findings, Finding(record.path, message, fix)))
+        way_out = f"ikgen inspect {shlex.quote(str(request.robot))}"
+        return Recheck(record.path, record, (*findings, Finding(record.path, message, way_out)))
     block = SampleBlock(record.path, robot, trust, fix, samples, seed)
     run = _Run(block, workers or Workers(), progress, done)
     found = _checked(record, reading, run)
     return replace(found, findings=(*findings, *found.findings))
+
+
+def _gone(record: Record, robot: Path) -> BadDescriptionError:
+    """That the description is not where the outputs were made from it."""
+    folder = shlex.quote(record.folder.as_posix())
+    hint = f"ikgen verify {folder} --robot FILE (the description, where it is now)"
+    return BadDescriptionError("no such file", file=str(robot), hint=hint)
 
 
 def _edited(record: Record, fix: str) -> list[Finding]:

@@ -75,6 +75,8 @@ def zarr_files(found: ReachMap) -> dict[str, bytes]:
 
 def read_map(path: Path) -> ReachMap:
     """The map of an .npz or a zarr group; raises `BadDescriptionError` for what is none."""
+    if not path.exists():
+        raise BadDescriptionError("no such file", file=str(path), hint="make one by ikgen reach")
     try:
         return _by_zarr(path) if path.is_dir() else _by_numpy(path)
     except (OSError, EOFError, KeyError, ValueError, zipfile.BadZipFile) as error:

@@ -11,6 +11,7 @@ import numpy as np
 
 from ikgen.errors import BadDescriptionError
 from ikgen.importers.dh.entry_expression import BadEntryError, evaluate, finite
+from ikgen.importers.dh.entry_units import note_units
 from ikgen.importers.dh.example_entry import read_example
 from ikgen.importers.dh.row_merge import Merged, merge, modified_rows
 from ikgen.importers.dh.table_chain import TableEnds, chain_of_rows, exact_chain
@@ -46,6 +47,7 @@ def read_dh_table(
             f"{moving} joints move, more than {MOST_AXES}", "fix joints by --lock JOINT=VALUE"
         )
     _check_convention(document, entries)
+    note_units(document, entries)
     ends = TableEnds(
         str(document.data.get("name") or path.stem),
         str(document.data.get("base", {}).get("name", "base")),

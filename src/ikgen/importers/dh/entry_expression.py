@@ -83,6 +83,8 @@ def finite(value: float) -> float:
         found = float(value)
     except OverflowError:
         found = math.inf
+    if math.isnan(found):
+        raise BadEntryError("nan is no number", "write lengths in m, angles in rad")
     if not abs(found) <= _LARGEST:
         raise BadEntryError(
             f"{found:g} is beyond {_LARGEST:g}", "write lengths in m, angles in rad"

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from ikgen.importers.xml_document import Place
 from ikgen.model.joint_tree import Joint
 
-__all__ = ["note_millimetres"]
+__all__ = ["FARTHEST_JOINT", "note_millimetres"]
 
-_FARTHEST_JOINT = 20.0
+FARTHEST_JOINT = 20.0
 """Most (m) from a moving joint to the one before, along an axis: longer than the booms of robots."""
 
 _TIMES = 30.0
@@ -21,8 +21,8 @@ def note_millimetres(joints: Sequence[Joint], place: Place) -> None:
     not, else of all at once where they are several. They are kept as they are."""
     moving = [joint for joint in joints if joint.type.moves_on_one_axis]
     lengths = {joint.name: _length(joint) for joint in _carried(moving, joints)}
-    near = [length for length in lengths.values() if 0.0 < length <= _FARTHEST_JOINT]
-    far = {name: length for name, length in lengths.items() if length > _FARTHEST_JOINT}
+    near = [length for length in lengths.values() if 0.0 < length <= FARTHEST_JOINT]
+    far = {name: length for name, length in lengths.items() if length > FARTHEST_JOINT}
     if len(far) < len(near) and min(far.values(), default=0.0) > _TIMES * max(near):
         lines = {joint.name: joint.line for joint in joints}
         for name, length in far.items():
@@ -30,7 +30,7 @@ def note_millimetres(joints: Sequence[Joint], place: Place) -> None:
             place.warn_at(lines[name], f"{text}: kept as it is")
         return
     apart = [abs(float(x)) for joint in moving for x in joint.T_parent_child[:3, 3]]
-    apart = [x for x in apart if x > _FARTHEST_JOINT]
+    apart = [x for x in apart if x > FARTHEST_JOINT]
     if len(apart) > 1:
         text = f"joints lie up to {max(apart):g} m apart: lengths look like mm: kept as they are"
         place.warn(None, text)
