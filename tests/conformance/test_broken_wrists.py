@@ -68,6 +68,21 @@ BESIDE_A_FOLD = (  # the wrist's continuum crosses the curve along which the elb
     ("-6.9e-05 5.6e-05 0", "-1.5708 0 0"),
 )
 
+AT_THE_CROSSING = (  # axes 4 to 6 of the arm miss each other by 0.07 mm, and the wrist's are tilted by 8e-6
+    ("0.0272776 0.106003 0.235236", "0.423202 0 -0.261799"),
+    ("0.0500248 0.123987 1.31115e-05", "-0.129894 -0.000368173 -0.000368543"),
+    ("-0.037 0 -0.127", "0 0 0"),
+    ("0 0.0295 -0.1245", "0 0 0"),
+    ("2.03519e-09 -0.02945 -0.106", "2.32719e-08 4.03082e-08 -1.06004e-10"),
+    ("-7.5629e-08 -0.01 -0.179", "0 -0.0872744 -7.56289e-06"),
+    ("0 0 0", "9.33556e-07 0 0"),
+)
+
+AT_THE_CROSSING_LIMITS = (
+    *((-2.356, 0.7854), (-2.618, 0.2618), (-1.833, 1.833), (-1.92, 0.08727)),
+    *((-1.484, 1.484), (-0.384, 0.5585), (-0.733, 1.012)),
+)
+
 
 def gaps(path: Path, configurations: Array, folder: Path) -> Array:
     """How far (2, N) the nearest row is from each of many beside these, in both languages."""
@@ -97,3 +112,19 @@ def test_curves_that_cross_beside_a_fold_are_found(tmp_path: Path) -> None:
     path = serial_urdf(tmp_path / "wrist.urdf", BESIDE_A_FOLD, tip=tool, limit=3.2)
     folded_back = np.pi / 4 * np.array([[0.0, -3.0, -3.0, 3.0, 4.0, -4.0]])
     assert gaps(path, folded_back, tmp_path).max() < 1e-5
+
+
+def test_solutions_where_curves_cross_are_found(tmp_path: Path) -> None:
+    """Regular ones, which lie where samples of either curve go astray to the other."""
+    axes = ("0 1 0", "-1 0 0", "0 0 -1", "0 1 0", "0 0 -1", "-7.53411e-06 1 6.59209e-07", "-1 0 0")
+    tool = ("0 0 -0.0230879", "0 0 0")
+    path = serial_urdf(
+        tmp_path / "wrist.urdf", AT_THE_CROSSING, axes=axes, tip=tool, limit=AT_THE_CROSSING_LIMITS
+    )
+    q = np.array(
+        [0.0, -0.2919340605, -1.5599661038, 0.0, -0.9241405614, 0.4190412404, -0.6661664260]
+    )
+    q = np.repeat(q[None], 40, axis=0)
+    q[:, 3] = -0.0024 + 1e-5 * np.arange(-20, 20)
+    arm, header = emitted_in_both(Request(path, name="wrist", free={"j0": -2.2057}), tmp_path)
+    assert gaps_in_both(arm, header, q).max() < 1e-4

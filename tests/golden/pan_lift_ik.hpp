@@ -1749,7 +1749,11 @@ template <class Arm> struct CurveParts : CurveSamples<Arm> {
   }
 
   void keep(const Sample& s) noexcept {
-    if (count == kRoom || !(std::abs(s.left) < Policy::kArrived)) return;
+    if (std::abs(s.left) < Policy::kArrived) note(s);
+  }
+
+  void note(const Sample& s) noexcept {
+    if (count == kRoom) return;
     double* q = found[count++];
     for (int j = 0; j < Arm::kDof; ++j)
       q[j] = Arm::kHeld[j] ? s.q[j] : SolutionRows<Arm>::within_period(j, s.q[j]);
@@ -1853,6 +1857,7 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
   using Curve::count;
   using Curve::is_solution;
   using Curve::keep;
+  using Curve::note;
   using Curve::look;
   using Curve::samples;
 
@@ -1926,6 +1931,8 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
       const Sample middle = Curve::part(a, b, 0.5);
       (Curve::fold.in_sense() == last.sense ? a : b) = middle;
     }
+    note(a);  // beside a crossing samples go astray to the other curve: steps begin there, wherever those led
+    note(b);
     find_across(last, a);
     for (const double side : {kAside, -kAside}) {
       double q[Arm::kDof], largest = 0.0;

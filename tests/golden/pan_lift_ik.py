@@ -1940,17 +1940,27 @@ _HALVES = 4  # by which they are found
 _ASIDE = 0.4  # rad or m: so far from a crossing curves are apart
 
 
-def _beside_crossings(arm: _Arm, parts: _Parts, T: Array) -> tuple[_Index, Array]:
-    """Rows (n, dof) beside places where others cross the curves of some parts, and whose these are (n,)."""
+class _Crossings(NamedTuple):
+    """Places where others cross the curves of `owner` (n,): rows `near` (n, 2, dof) to both sides on the
+    curve, and one `beside` (n, dof), by a way along the second direction that hardly moves the pose."""
+
+    owner: _Index
+    near: Array
+    beside: Array
+
+
+def _crossings_of(arm: _Arm, parts: _Parts, T: Array) -> _Crossings:
+    """Where others cross the curves of some parts."""
     owner, a, b = parts.owner, parts.a, parts.b
+    none = _Crossings(owner[:0], np.stack([a.q, a.q], axis=1)[:0], a.q[:0])
     if not len(owner) or a.out.shape != a.still.shape:
-        return owner[:0], a.q[:0]
+        return none
     sense = _keeps(arm, a, T[owner])
     crossing = np.flatnonzero(sense != _keeps(arm, b, T[owner]))
     crossing = crossing[np.argsort(owner[crossing], kind="stable")]
     crossing = crossing[_places(owner[crossing]) < _CROSSINGS]
     if not len(crossing):
-        return owner[:0], a.q[:0]
+        return none
     parts, sense = _some_of(parts, crossing), sense[crossing]
     aim, each = T[parts.owner], np.arange(len(crossing))
     ends = _Reduced(*map(np.stack, zip(parts.a, parts.b)))
@@ -1964,7 +1974,7 @@ def _beside_crossings(arm: _Arm, parts: _Parts, T: Array) -> tuple[_Index, Array
     along, _ = _unit((parts.b.q - parts.a.q)[:, list(arm.moving)])  # the still direction turns there
     other = np.linalg.svd(_others(arm, at._replace(still=along), aim))[2][:, -2]
     step = _ASIDE / np.abs(other).max(axis=1)[:, None] * other
-    return parts.owner, _moved_rows(arm, at.q, step)
+    return _Crossings(parts.owner, ends.q.swapaxes(0, 1), _moved_rows(arm, at.q, step))
 
 
 def _keeps(arm: _Arm, at: _Reduced, T: Array) -> _Flags:
@@ -2239,8 +2249,14 @@ def _traced(arm: _Arm, q: Array, T: Array) -> tuple[_Index, _Flags, _Flags, _Ind
     curves = _followed(arm, q, T)
     steps, broken = _kinds(arm, curves)
     here, last = (_some_of(some, broken[some.owner]) for some in curves[:2])
-    found = _look(arm, _joined(here, last, _crossing_parts(arm, here, T)), T, steps)
-    return curves.same, steps >= _LEAST, broken, *found
+    crossings = _crossings_of(arm, here, T)
+    parts: _Parts = _joined(here, last, _crossing_parts(arm, here, crossings, T))
+    owner, found = _look(arm, parts, T, steps)
+    # beside a crossing samples go astray to the other curve: steps begin there, wherever those led
+    owner = np.concatenate([owner, np.repeat(crossings.owner, 2)])
+    found = np.concatenate([found, crossings.near.reshape(-1, q.shape[1])])
+    order = np.argsort(owner, kind="stable")
+    return curves.same, steps >= _LEAST, broken, owner[order], found[order]
 
 
 def _kinds(arm: _Arm, curves: _Walked) -> tuple[_Index, _Flags]:
@@ -2252,9 +2268,9 @@ def _kinds(arm: _Arm, curves: _Walked) -> tuple[_Index, _Flags]:
     return steps, broken
 
 
-def _crossing_parts(arm: _Arm, parts: _Parts, T: Array) -> _Parts:
+def _crossing_parts(arm: _Arm, parts: _Parts, crossings: _Crossings, T: Array) -> _Parts:
     """The parts of broken curves that cross those of some parts."""
-    owner, q = _beside_crossings(arm, parts, T)
+    owner, _, q = crossings
     none: _Parts = _some_of(parts, owner[:0])
     if not len(owner):
         return none

@@ -62,7 +62,12 @@ template <class Arm> struct CurveParts : CurveSamples<Arm> {
   }
 
   void keep(const Sample& s) noexcept {
-    if (count == kRoom || !(std::abs(s.left) < Policy::kArrived)) return;
+    if (std::abs(s.left) < Policy::kArrived) note(s);
+  }
+
+  // Of where steps begin, whatever is left there.
+  void note(const Sample& s) noexcept {
+    if (count == kRoom) return;
     double* q = found[count++];
     for (int j = 0; j < Arm::kDof; ++j)
       q[j] = Arm::kHeld[j] ? s.q[j] : SolutionRows<Arm>::within_period(j, s.q[j]);

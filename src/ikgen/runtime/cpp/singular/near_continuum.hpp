@@ -38,6 +38,7 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
   using Curve::count;
   using Curve::is_solution;
   using Curve::keep;
+  using Curve::note;
   using Curve::look;
   using Curve::samples;
 
@@ -120,6 +121,8 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
       const Sample middle = Curve::part(a, b, 0.5);
       (Curve::fold.in_sense() == last.sense ? a : b) = middle;
     }
+    note(a);  // beside a crossing samples go astray to the other curve: steps begin there, wherever those led
+    note(b);
     find_across(last, a);
     for (const double side : {kAside, -kAside}) {
       double q[Arm::kDof], largest = 0.0;

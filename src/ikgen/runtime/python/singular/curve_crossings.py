@@ -3,6 +3,8 @@ directions hardly move the pose."""
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from ikgen.runtime.python.arm.solved_arm import Arm
@@ -13,28 +15,37 @@ from ikgen.runtime.python.rows.solution_rows import places
 from ikgen.runtime.python.singular.curve_parts import Parts, between
 from ikgen.runtime.python.singular.fold_pair import Reduced, flow_and_others, keeps_sense, unit
 
-__all__ = ["beside_crossings"]
+__all__ = ["Crossings", "crossings_of"]
 
 _CROSSINGS = 4  # crossings of a curve
 _HALVES = 4  # by which they are found
 _ASIDE = 0.4  # rad or m: so far from a crossing curves are apart
 
 
-def beside_crossings(arm: Arm, parts: Parts, T: Array) -> tuple[Index, Array]:
-    """Rows (n, dof) beside places where others cross the curves of some parts, and whose these are (n,): a
-    way along the second direction that hardly moves the pose.
+class Crossings(NamedTuple):
+    """Places where others cross the curves of `owner` (n,): rows `near` (n, 2, dof) to both sides on the
+    curve, and one `beside` (n, dof), by a way along the second direction that hardly moves the pose."""
+
+    owner: Index
+    near: Array
+    beside: Array
+
+
+def crossings_of(arm: Arm, parts: Parts, T: Array) -> Crossings:
+    """Where others cross the curves of some parts.
 
     Where that one is passed, the sense turns round in which the others with the still one for what is left
     move the pose; of arms with fewer joints than equations nothing tells."""
     owner, a, b = parts.owner, parts.a, parts.b
+    none = Crossings(owner[:0], np.stack([a.q, a.q], axis=1)[:0], a.q[:0])
     if not len(owner) or a.out.shape != a.still.shape:
-        return owner[:0], a.q[:0]
+        return none
     sense = _keeps(arm, a, T[owner])
     crossing = np.flatnonzero(sense != _keeps(arm, b, T[owner]))
     crossing = crossing[np.argsort(owner[crossing], kind="stable")]
     crossing = crossing[places(owner[crossing]) < _CROSSINGS]
     if not len(crossing):
-        return owner[:0], a.q[:0]
+        return none
     parts, sense = some_of(parts, crossing), sense[crossing]
     aim, each = T[parts.owner], np.arange(len(crossing))
     ends = Reduced(*map(np.stack, zip(parts.a, parts.b)))
@@ -48,7 +59,7 @@ def beside_crossings(arm: Arm, parts: Parts, T: Array) -> tuple[Index, Array]:
     along, _ = unit((parts.b.q - parts.a.q)[:, list(arm.moving)])  # the still direction turns there
     other = np.linalg.svd(_others(arm, at._replace(still=along), aim))[2][:, -2]
     step = _ASIDE / np.abs(other).max(axis=1)[:, None] * other
-    return parts.owner, moved_rows(arm, at.q, step)
+    return Crossings(parts.owner, ends.q.swapaxes(0, 1), moved_rows(arm, at.q, step))
 
 
 def _keeps(arm: Arm, at: Reduced, T: Array) -> Flags:

@@ -17,7 +17,7 @@ from ikgen.runtime.python.newton.arm_newton import refined
 from ikgen.runtime.python.newton.refinement import least_singular
 from ikgen.runtime.python.rows.row_links import differences
 from ikgen.runtime.python.rows.solution_rows import places
-from ikgen.runtime.python.singular.curve_crossings import beside_crossings
+from ikgen.runtime.python.singular.curve_crossings import Crossings, crossings_of
 from ikgen.runtime.python.singular.curve_parts import Parts, between, look
 from ikgen.runtime.python.singular.curve_samples import samples_beside
 from ikgen.runtime.python.singular.curve_walks import BESIDE, Walked, reached, walked
@@ -78,8 +78,14 @@ def _traced(arm: Arm, q: Array, T: Array) -> tuple[Index, Flags, Flags, Index, A
     curves = followed(arm, q, T)
     steps, broken = _kinds(arm, curves)
     here, last = (some_of(some, broken[some.owner]) for some in curves[:2])
-    found = look(arm, joined(here, last, _crossing_parts(arm, here, T)), T, steps)
-    return curves.same, steps >= LEAST, broken, *found
+    crossings = crossings_of(arm, here, T)
+    parts: Parts = joined(here, last, _crossing_parts(arm, here, crossings, T))
+    owner, found = look(arm, parts, T, steps)
+    # beside a crossing samples go astray to the other curve: steps begin there, wherever those led
+    owner = np.concatenate([owner, np.repeat(crossings.owner, 2)])
+    found = np.concatenate([found, crossings.near.reshape(-1, q.shape[1])])
+    order = np.argsort(owner, kind="stable")
+    return curves.same, steps >= LEAST, broken, owner[order], found[order]
 
 
 def _kinds(arm: Arm, curves: Walked) -> tuple[Index, Flags]:
@@ -91,9 +97,9 @@ def _kinds(arm: Arm, curves: Walked) -> tuple[Index, Flags]:
     return steps, broken
 
 
-def _crossing_parts(arm: Arm, parts: Parts, T: Array) -> Parts:
+def _crossing_parts(arm: Arm, parts: Parts, crossings: Crossings, T: Array) -> Parts:
     """The parts of broken curves that cross those of some parts."""
-    owner, q = beside_crossings(arm, parts, T)
+    owner, _, q = crossings
     none: Parts = some_of(parts, owner[:0])
     if not len(owner):
         return none
