@@ -122,7 +122,7 @@ def test_solutions_where_curves_cross_are_found(tmp_path: Path) -> None:
         tmp_path / "wrist.urdf", AT_THE_CROSSING, axes=axes, tip=tool, limit=AT_THE_CROSSING_LIMITS
     )
     q = np.array(
-        [0.0, -0.2919340605, -1.5599661038, 0.0, -0.9241405614, 0.4190412404, -0.6661664260]
+        [-2.2057, -0.2919340605, -1.5599661038, 0.0, -0.9241405614, 0.4190412404, -0.6661664260]
     )
     q = np.repeat(q[None], 40, axis=0)
     q[:, 3] = -0.0024 + 1e-5 * np.arange(-20, 20)
