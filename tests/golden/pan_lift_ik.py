@@ -1340,6 +1340,15 @@ def _places(pose: _Index) -> _Index:
     return np.asarray(np.arange(len(pose)) - first)
 
 
+def _pairs_within(group: _Index) -> tuple[_Index, _Index]:
+    """The members of each pair (n,) of a group (k,), the earlier ones first."""
+    order = np.argsort(group, kind="stable")
+    in_order = group[order]
+    more = np.searchsorted(in_order, in_order, side="right") - np.arange(len(group)) - 1
+    one = np.repeat(np.arange(len(group)), more)
+    return order[one], order[one + 1 + _places(one)]
+
+
 # Solutions on parts of curves, between two samples each, by what is left of the error there and how that
 # grows.
 
@@ -1605,9 +1614,9 @@ def _collapsed(arm: _Arm, starts: _Starts, led: _Ends) -> _Flags:
     """To which of the ends (k,) of marked starts another of their pose has come too from aside, which is
     alone there."""
     pose, way = starts.pose, np.abs(_differences(arm, starts.q, led.q)).max(axis=1)
-    a, b = np.triu_indices(len(pose), 1)
+    a, b = _pairs_within(pose)
     alone = (led.error < arm.policy.arrived) & (led.sigma > _CONTINUUM)
-    some = (pose[a] == pose[b]) & alone[a] & alone[b]
+    some = alone[a] & alone[b]
     a, b = a[some], b[some]
     same = np.abs(_differences(arm, led.q[a], led.q[b])).max(axis=1) < arm.policy.alike
     same &= np.maximum(way[a], way[b]) > arm.policy.alike  # not where two branches meet
@@ -2056,7 +2065,7 @@ class _Walks:
 
     def __init__(self, arm: _Arm, first: _Reduced, T: Array, group: _Index) -> None:
         self._arm, self._count = arm, len(T)
-        near = _meetings(arm, first, T, group, (1.0, -1.0))
+        near = _meetings(arm, first, T, group, False)
         self._same = _united(np.arange(len(T)), near.one, near.other)
         back = first._replace(still=-first.still, out=-first.out, left=-first.left)
         self.origin: _Reduced = _joined(first, back)
@@ -2077,7 +2086,7 @@ class _Walks:
         if step > 1:
             self.closed[owner[_back(arm, _some_of(self.origin, owner), passed.a)]] = True
         group = np.where(sure, self._group[owner], -1 - owner)
-        met = _meetings(arm, c, self.T[owner], group, (-1.0,))
+        met = _meetings(arm, c, self.T[owner], group, True)
         self._same = _united(self._same, owner[met.one] % count, owner[met.other] % count)
         going = ~(self.closed[owner] | self.closed[owner % count])
         going[met.one] = going[met.other] = False
@@ -2106,12 +2115,10 @@ def _ahead(arm: _Arm, b: _Reduced, before: Array) -> Array:
     return q
 
 
-def _meetings(
-    arm: _Arm, at: _Reduced, T: Array, group: _Index, senses: tuple[float, ...]
-) -> _Meetings:
-    """Which samples of a `group` (n,) are by a step from each other on one curve, in the same sense (1) or
-    each other's way (-1)."""
-    one, other = _curve_walks_pairs(group)
+def _meetings(arm: _Arm, at: _Reduced, T: Array, group: _Index, facing: bool) -> _Meetings:
+    """Which samples of a `group` (n,) are by a step from each other on one curve, if `facing` in each
+    other's way."""
+    one, other = _pairs_within(group)
     a, b = _some_of(at, one), _some_of(at, other)
     turn = (a.still * b.still).sum(axis=1)
     sense = np.where(turn < 0.0, -1.0, 1.0)
@@ -2119,7 +2126,7 @@ def _meetings(
     a = a._replace(still=mean)
     way, ahead, beside = _way(arm, a, b.q)
     near = np.abs(way).max(axis=1) < _MEETING * arm.policy.try_step
-    near &= (beside < _curve_walks_BESIDE) & (np.abs(turn) > _FACING) & np.isin(sense, senses)
+    near &= (beside < _curve_walks_BESIDE) & ((-turn if facing else np.abs(turn)) > _FACING)
     a, one, other, ahead = _some_of(a, near), one[near], other[near], ahead[near]
     if len(one):
         on, a = _reached(arm, a, at.q[other], T[one])
@@ -2133,15 +2140,8 @@ def _meetings(
 def _bridges(passed: _Parts, met: _Meetings) -> _Parts:
     """The parts between samples that meet, if they have not passed each other."""
     some = met.ahead > 0.0
-    one = met.one[some]
-    place = passed.place[one] + 1.0
-    return _Parts(
-        _some_of(passed.b, one),
-        _some_of(met.there, some),
-        passed.owner[one],
-        place,
-        np.ones(len(one)),
-    )
+    last: _Parts = _some_of(passed, met.one[some])
+    return last._replace(a=last.b, b=_some_of(met.there, some), place=last.place + 1.0)
 
 
 def _united(same: _Index, one: _Index, other: _Index) -> _Index:
@@ -2150,15 +2150,6 @@ def _united(same: _Index, one: _Index, other: _Index) -> _Index:
         low, high = sorted((same[a], same[b]))
         same = np.where(same == high, low, same)
     return same
-
-
-def _curve_walks_pairs(group: _Index) -> tuple[_Index, _Index]:
-    """The members of each pair (n,) of a group (k,)."""
-    order = np.argsort(group, kind="stable")
-    in_order = group[order]
-    more = np.searchsorted(in_order, in_order, side="right") - np.arange(len(group)) - 1
-    one = np.repeat(np.arange(len(group)), more)
-    return order[one], order[one + 1 + _places(one)]
 
 
 def _back(arm: _Arm, a: _Reduced, b: _Reduced) -> _Flags:

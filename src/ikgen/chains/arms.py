@@ -30,9 +30,8 @@ class ChainCandidate:
 
     `dof` counts independent joints: a mimic joint follows its driver. `left_out` says which joint behind
     the tip is taken for a gripper's where it may be the arm's, and which lie above a joint that floats or
-    moves in a plane ("": none). `followers`: what those of the
-    joints follow that follow another one. `other_tips` are the links fixed to the tip, nearest to the joint
-    first: the same joints place them.
+    moves in a plane ("": none). `followers`: what those of the joints follow that follow another one.
+    `other_tips` are the links fixed to the tip, nearest to the joint first: the same joints place them.
     """
 
     base: str

@@ -127,9 +127,9 @@ def _tip(found: Inspection) -> list[str]:
     from ikgen.tasks import find_task
 
     taken = found.taken
-    if taken is None or taken.dh is None or not taken.default:
+    if taken is None or taken.dh is None or found.reading is None or not taken.default:
         return []
-    words = tip_on_axis(taken.dh, find_task(taken.task))
+    words = tip_on_axis(taken.dh, find_task(taken.task), found.reading.source.has_links)
     return [f"  {words}"] if words else []
 
 

@@ -20,15 +20,15 @@ def announcements(derivation: Derivation) -> tuple[str, ...]:
     arm can do, or than its name says, that the tip lies on the last axis where the task tells of it, and
     why joints of an arm with six at most are held, and that some which it needs hardly move."""
     reading = derivation.reading
-    table = reading.source.kind == "dh-table"
+    links = reading.source.has_links
     told = (
         _passed_over(derivation),
         _over_constrained(derivation) or _tilting(derivation),
-        tip_on_axis(reading.dh, derivation.task, table) if derivation.chosen else "",
-        lost_freedom(derivation.reading, ()) if derivation.held else "",
-        idle_warning(derivation.reading.dh, derivation.task),
+        tip_on_axis(reading.dh, derivation.task, links) if derivation.chosen else "",
+        lost_freedom(reading, ()) if derivation.held else "",
+        idle_warning(reading.dh, derivation.task),
     )
-    return (*derivation.reading.source.warnings, *filter(None, told))
+    return (*reading.source.warnings, *filter(None, told))
 
 
 def _passed_over(derivation: Derivation) -> str:

@@ -261,13 +261,15 @@ def _check_units(request: Request, joints: Iterable[Joint | ActuatedJoint]) -> N
 
 def _check_locks(request: Request, joints: Iterable[Joint | ActuatedJoint]) -> None:
     """Raises `UsageError` for a joint that is locked outside its limits."""
+    from ikgen.kinematics.free_joints import VALUE_INSIDE
+
     for joint in joints:
         value, limits = request.lock.get(joint.name), joint.limits
         if value is not None and not limits.lower <= value <= limits.upper:
             raise UsageError(
                 f"--lock {joint.name}={value:.9g}: outside the joint's limits, "
                 f"{limits.lower:.9g} to {limits.upper:.9g}",
-                hint="give a value inside them: in rad or m, or with its unit, as 45deg or 120mm",
+                hint=VALUE_INSIDE,
             )
 
 

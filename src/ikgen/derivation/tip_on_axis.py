@@ -20,10 +20,10 @@ _ON_AXIS = 1e-6
 """How far off an axis, of the arm's length, a tip is on it: the rounding of files."""
 
 
-def tip_on_axis(dh: DHChain, task: Task, table: bool = False) -> str:
+def tip_on_axis(dh: DHChain, task: Task, links: bool) -> str:
     """In words, that the tip's origin lies on the last joint's axis, where a chosen task tells of it: one
     that asks more than the joints move, or a turn alone where a tip farther out had a place to reach; ""
-    elsewhere. A `table` has no links to name."""
+    elsewhere. `links`: whether the description has any to name."""
     from ikgen.kinematics.axis_relations import reach
     from ikgen.tasks.fitting import fitting_tasks, over_constrained
 
@@ -40,7 +40,7 @@ def tip_on_axis(dh: DHChain, task: Task, table: bool = False) -> str:
         if task.position or fitting_tasks(moved)[0].stem == task.stem:
             return ""
     way_out = (
-        "place it by [tool] xyz" if table else "give its link by --tip, or add one to the file"
+        "give its link by --tip, or add one to the file" if links else "place it by [tool] xyz"
     )
     return (
         f"'{last.name}' turns '{dh.tip_link}' about its own origin, which stays where it is: where a foot "

@@ -21,7 +21,7 @@ from ikgen.errors import BadDescriptionError, MissingToolError, UnknownNameError
 from ikgen.importers.packages import AMENT, sourced
 from ikgen.importers.robot_table import RENAMED
 
-__all__ = ["SOURCES", "NamedRobot", "find_robot", "is_named", "robot_names"]
+__all__ = ["SOURCES", "NamedRobot", "find_robot", "is_lost", "is_named", "robot_names"]
 
 DATA, DESCRIPTIONS = "example-robot-data", "robot_descriptions"
 SOURCES = {
@@ -51,6 +51,11 @@ def is_named(robot: str | os.PathLike[str]) -> bool:
     """Whether a robot is told by a package and a name, not by a path."""
     source, colon, _ = os.fspath(robot).partition(":")
     return bool(colon) and source in SOURCES
+
+
+def is_lost(robot: Path) -> bool:
+    """Whether there is nothing where a path names a robot's file."""
+    return not (is_named(robot) or robot.exists())
 
 
 def find_robot(robot: str | os.PathLike[str]) -> NamedRobot:

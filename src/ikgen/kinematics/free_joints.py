@@ -12,7 +12,10 @@ from ikgen.kinematics.idle_joints import hardly_moves
 from ikgen.model.chain import ActuatedJoint
 from ikgen.model.dh import DHChain
 
-__all__ = ["free_defaults"]
+__all__ = ["VALUE_INSIDE", "free_defaults"]
+
+VALUE_INSIDE = "give a value inside them: in rad or m, or with its unit, as 45deg or 120mm"
+"""The hint where a value is outside limits."""
 
 _SAMPLES = 32
 _LOST = 1e-3
@@ -42,7 +45,7 @@ def _choices(joint: ActuatedJoint, value: float | None, length: float) -> tuple[
             return (value,)
         raise UsageError(
             f"--free {joint.name}={value:.9g}: outside its limits, {low:.9g} to {high:.9g}",
-            hint="give a value inside them: in rad or m, or with its unit, as 45deg or 120mm; or none",
+            hint=f"{VALUE_INSIDE}; or none",
         )
     if hardly_moves(joint, length):
         return (0.5 * (low + high),)

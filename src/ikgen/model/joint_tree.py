@@ -10,7 +10,10 @@ from ikgen.model.arrays import Array
 from ikgen.model.joint_relation import Mimic
 from ikgen.model.oddity import Oddity
 
-__all__ = ["Joint", "JointTree", "JointType", "Limits", "Mimic", "Source"]
+__all__ = ["DH_TABLE", "Joint", "JointTree", "JointType", "Limits", "Mimic", "Source"]
+
+DH_TABLE = "dh-table"
+"""The kind of a source that is a DH table."""
 
 
 class JointType(Enum):
@@ -87,6 +90,11 @@ class Source:
     warnings: tuple[Oddity, ...] = ()
     example: tuple[float, ...] = ()
     environment: tuple[tuple[str, str | None], ...] = ()
+
+    @property
+    def has_links(self) -> bool:
+        """Whether its links have names of their own, unlike those of a DH table."""
+        return self.kind != DH_TABLE
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from ikgen.errors import IkgenError
 from ikgen.projects.config import ArmConfig, named_config
-from ikgen.projects.recorded_arms import has_lost_robot, listed_arms
+from ikgen.projects.recorded_arms import ROBOT_NOW, has_lost_robot, listed_arms
 from ikgen.projects.stale import stale_reasons
 
 __all__ = ["main", "mending", "stale_lines"]
@@ -23,7 +23,7 @@ def stale_lines(reasons: Sequence[tuple[str, str]]) -> list[str]:
 def mending(config: Path, arms: Sequence[ArmConfig] = ()) -> str:
     """The command that brings arms of a config, or of a folder's records, up to date."""
     lost = any(has_lost_robot(config, arm) for arm in arms)
-    more = " --robot FILE (the description, where it is now)" if lost else ""
+    more = f" {ROBOT_NOW}" if lost else ""
     return f"ikgen build {shlex.quote(config.as_posix())}{more}"
 
 

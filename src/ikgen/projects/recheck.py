@@ -12,12 +12,13 @@ from ikgen.derivation.progress import Progress, silent
 from ikgen.derivation.read import read
 from ikgen.errors import BadDescriptionError, UnknownNameError, UsageError
 from ikgen.generation.emitters import solver_files
-from ikgen.importers.named_robots import is_named
+from ikgen.importers.named_robots import is_lost, is_named
 from ikgen.outputs.journal import half_in_place
 from ikgen.outputs.publish import left_over
 from ikgen.processes.executors import Workers
 from ikgen.projects.check_findings import HALF_IN_PLACE, Finding, Recheck
 from ikgen.projects.output_checks import Checked, OutputChecks
+from ikgen.projects.recorded_arms import ROBOT_NOW
 from ikgen.projects.recorded_inputs import Packages
 from ikgen.projects.sample_blocks import BLOCK, SampleBlock, blocks_checked
 from ikgen.records.record import Record, digest
@@ -51,7 +52,7 @@ def recheck(
     forced = command or f"{made} --force"
     fix = command or (made if robot is None else forced)  # they may be of another robot
     request = replace(record.again(robot), trust=trust)
-    if robot is None and not (is_named(request.robot) or request.robot.exists()):
+    if robot is None and is_lost(request.robot):
         raise _gone(record, request.robot)
     findings = [*_edited(record, forced), *_left_over(record)]
     progress("read", str(request.robot))
@@ -72,7 +73,7 @@ def recheck(
 def _gone(record: Record, robot: Path) -> BadDescriptionError:
     """That the description is not where the outputs were made from it."""
     folder = shlex.quote(record.folder.as_posix())
-    hint = f"ikgen verify {folder} --robot FILE (the description, where it is now)"
+    hint = f"ikgen verify {folder} {ROBOT_NOW}"
     return BadDescriptionError("no such file", file=str(robot), hint=hint)
 
 

@@ -6,12 +6,16 @@ from dataclasses import replace
 from pathlib import Path
 
 from ikgen.errors import UsageError
-from ikgen.importers.named_robots import is_named
+from ikgen.importers.named_robots import is_lost
 from ikgen.projects.config import ArmConfig, load_config
 from ikgen.records.record import find_records, read_record, records_of
 from ikgen.records.request import Outputs
 
-__all__ = ["arms_below", "has_lost_robot", "listed_arms"]
+__all__ = ["ROBOT_NOW", "arms_below", "has_lost_robot", "listed_arms"]
+
+
+ROBOT_NOW = "--robot FILE (the description, where it is now)"
+"""What to add to a command for outputs that were moved away from their description."""
 
 
 def arms_below(folder: Path) -> tuple[ArmConfig, ...]:
@@ -49,5 +53,4 @@ def listed_arms(path: Path, robot: Path | None = None) -> tuple[ArmConfig, ...]:
 def has_lost_robot(path: Path, arm: ArmConfig) -> bool:
     """Whether an arm of a folder's records has no description where they name it, as of outputs that were
     moved alone."""
-    robot = arm.request.robot
-    return path.is_dir() and not is_named(robot) and not robot.exists()
+    return path.is_dir() and is_lost(arm.request.robot)

@@ -14,8 +14,9 @@ from tests.support.solving import import_text
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.runtime.python.arm.chain_kinematics import forward
 from ikgen.runtime.python.arrays.angles import WHOLE_TURN
+from ikgen.runtime.python.rows.solution_rows import pairs_within
 from ikgen.runtime.python.singular import curve_walks
-from ikgen.runtime.python.singular.curve_walks import _pairs, _united, walked
+from ikgen.runtime.python.singular.curve_walks import _united, walked
 from ikgen.runtime.python.singular.fold_pair import Reduced
 from ikgen.runtime.python.singular.near_continuum import followed
 
@@ -105,9 +106,9 @@ def test_a_walk_that_began_beside_its_curve_goes_round_once(
 
 def test_pairs_are_those_of_one_group() -> None:
     group = np.array([4, 1, 4, 2, 1, 4])
-    found = set(zip(*(x.tolist() for x in _pairs(group)), strict=True))
+    found = set(zip(*(x.tolist() for x in pairs_within(group)), strict=True))
     assert found == {(0, 2), (0, 5), (2, 5), (1, 4)}
-    assert not len(_pairs(np.array([], dtype=np.intp))[0])
+    assert not len(pairs_within(np.array([], dtype=np.intp))[0])
 
 
 def test_what_meets_in_turn_is_one() -> None:

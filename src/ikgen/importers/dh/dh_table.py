@@ -22,7 +22,7 @@ from ikgen.kinematics.rigid import rotation_rpy
 from ikgen.model.arrays import Array
 from ikgen.model.chain import MOST_AXES
 from ikgen.model.dh import DHChain
-from ikgen.model.joint_tree import Source
+from ikgen.model.joint_tree import DH_TABLE, Source
 from ikgen.model.oddity import OddityKind
 
 __all__ = ["read_dh_table"]
@@ -82,7 +82,7 @@ def _note_new_rows(document: TableDocument, merged: Merged) -> None:
 def _source(document: TableDocument, example: tuple[float, ...]) -> Source:
     return Source(
         path=document.path,
-        kind="dh-table",
+        kind=DH_TABLE,
         text=document.text,
         sha256=hashlib.sha256(document.text.encode()).hexdigest(),
         dependencies=(document.path.resolve(),),

@@ -13,6 +13,7 @@ __all__ = [
     "distinct_rows",
     "exact_first",
     "first_of_equals",
+    "pairs_within",
     "places",
     "rows_of",
     "slides_near",
@@ -38,6 +39,15 @@ def places(pose: Index) -> Index:
     """The number of each row among those of its pose, pose (k,) in order."""
     first = np.searchsorted(pose, pose)
     return np.asarray(np.arange(len(pose)) - first)
+
+
+def pairs_within(group: Index) -> tuple[Index, Index]:
+    """The members of each pair (n,) of a group (k,), the earlier ones first."""
+    order = np.argsort(group, kind="stable")
+    in_order = group[order]
+    more = np.searchsorted(in_order, in_order, side="right") - np.arange(len(group)) - 1
+    one = np.repeat(np.arange(len(group)), more)
+    return order[one], order[one + 1 + places(one)]
 
 
 def first_of_equals(q: Array, pose: Index, turning: Turning, coincident: float) -> Flags:

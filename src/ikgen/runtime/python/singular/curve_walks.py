@@ -12,7 +12,7 @@ from ikgen.runtime.python.arm.solved_arm import Arm
 from ikgen.runtime.python.arrays.array_tuples import joined, some_of
 from ikgen.runtime.python.arrays.array_types import Array, Flags, Index
 from ikgen.runtime.python.rows.row_links import differences
-from ikgen.runtime.python.rows.solution_rows import places
+from ikgen.runtime.python.rows.solution_rows import pairs_within
 from ikgen.runtime.python.singular.curve_parts import BEYOND, Parts
 from ikgen.runtime.python.singular.curve_samples import sampled
 from ikgen.runtime.python.singular.fold_pair import Reduced, unit
@@ -87,7 +87,7 @@ class _Walks:
 
     def __init__(self, arm: Arm, first: Reduced, T: Array, group: Index) -> None:
         self._arm, self._count = arm, len(T)
-        near = _meetings(arm, first, T, group, (1.0, -1.0))
+        near = _meetings(arm, first, T, group, False)
         self._same = _united(np.arange(len(T)), near.one, near.other)
         back = first._replace(still=-first.still, out=-first.out, left=-first.left)
         self.origin: Reduced = joined(first, back)
@@ -108,7 +108,7 @@ class _Walks:
         if step > 1:
             self.closed[owner[_back(arm, some_of(self.origin, owner), passed.a)]] = True
         group = np.where(sure, self._group[owner], -1 - owner)
-        met = _meetings(arm, c, self.T[owner], group, (-1.0,))
+        met = _meetings(arm, c, self.T[owner], group, True)
         self._same = _united(self._same, owner[met.one] % count, owner[met.other] % count)
         going = ~(self.closed[owner] | self.closed[owner % count])
         going[met.one] = going[met.other] = False
@@ -137,12 +137,10 @@ def _ahead(arm: Arm, b: Reduced, before: Array) -> Array:
     return q
 
 
-def _meetings(
-    arm: Arm, at: Reduced, T: Array, group: Index, senses: tuple[float, ...]
-) -> _Meetings:
-    """Which samples of a `group` (n,) are by a step from each other on one curve, in the same sense (1) or
-    each other's way (-1)."""
-    one, other = _pairs(group)
+def _meetings(arm: Arm, at: Reduced, T: Array, group: Index, facing: bool) -> _Meetings:
+    """Which samples of a `group` (n,) are by a step from each other on one curve, if `facing` in each
+    other's way."""
+    one, other = pairs_within(group)
     a, b = some_of(at, one), some_of(at, other)
     turn = (a.still * b.still).sum(axis=1)
     sense = np.where(turn < 0.0, -1.0, 1.0)
@@ -150,7 +148,7 @@ def _meetings(
     a = a._replace(still=mean)
     way, ahead, beside = _way(arm, a, b.q)
     near = np.abs(way).max(axis=1) < _MEETING * arm.policy.try_step
-    near &= (beside < BESIDE) & (np.abs(turn) > _FACING) & np.isin(sense, senses)
+    near &= (beside < BESIDE) & ((-turn if facing else np.abs(turn)) > _FACING)
     a, one, other, ahead = some_of(a, near), one[near], other[near], ahead[near]
     if len(one):
         on, a = reached(arm, a, at.q[other], T[one])
@@ -164,15 +162,8 @@ def _meetings(
 def _bridges(passed: Parts, met: _Meetings) -> Parts:
     """The parts between samples that meet, if they have not passed each other."""
     some = met.ahead > 0.0
-    one = met.one[some]
-    place = passed.place[one] + 1.0
-    return Parts(
-        some_of(passed.b, one),
-        some_of(met.there, some),
-        passed.owner[one],
-        place,
-        np.ones(len(one)),
-    )
+    last: Parts = some_of(passed, met.one[some])
+    return last._replace(a=last.b, b=some_of(met.there, some), place=last.place + 1.0)
 
 
 def _united(same: Index, one: Index, other: Index) -> Index:
@@ -181,15 +172,6 @@ def _united(same: Index, one: Index, other: Index) -> Index:
         low, high = sorted((same[a], same[b]))
         same = np.where(same == high, low, same)
     return same
-
-
-def _pairs(group: Index) -> tuple[Index, Index]:
-    """The members of each pair (n,) of a group (k,)."""
-    order = np.argsort(group, kind="stable")
-    in_order = group[order]
-    more = np.searchsorted(in_order, in_order, side="right") - np.arange(len(group)) - 1
-    one = np.repeat(np.arange(len(group)), more)
-    return order[one], order[one + 1 + places(one)]
 
 
 def _back(arm: Arm, a: Reduced, b: Reduced) -> Flags:

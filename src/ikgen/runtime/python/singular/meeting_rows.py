@@ -15,7 +15,7 @@ from ikgen.runtime.python.newton.arm_newton import linearized, refined
 from ikgen.runtime.python.newton.refinement import least_singular
 from ikgen.runtime.python.rows.row_links import differences
 from ikgen.runtime.python.rows.row_placement import distinct, same_rows
-from ikgen.runtime.python.rows.solution_rows import places
+from ikgen.runtime.python.rows.solution_rows import pairs_within, places
 from ikgen.runtime.python.singular.curve_parts import look_between
 from ikgen.runtime.python.singular.curve_samples import SOLVED, samples_beside
 from ikgen.runtime.python.singular.fold_pair import approach
@@ -125,9 +125,9 @@ def _collapsed(arm: Arm, starts: Starts, led: Ends) -> Flags:
     alone there: the direction that they began with is lost, and the solution that one of them was near may
     lie far away."""
     pose, way = starts.pose, np.abs(differences(arm, starts.q, led.q)).max(axis=1)
-    a, b = np.triu_indices(len(pose), 1)
+    a, b = pairs_within(pose)
     alone = (led.error < arm.policy.arrived) & (led.sigma > _CONTINUUM)
-    some = (pose[a] == pose[b]) & alone[a] & alone[b]
+    some = alone[a] & alone[b]
     a, b = a[some], b[some]
     same = np.abs(differences(arm, led.q[a], led.q[b])).max(axis=1) < arm.policy.alike
     same &= np.maximum(way[a], way[b]) > arm.policy.alike  # not where two branches meet
