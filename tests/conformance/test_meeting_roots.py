@@ -24,6 +24,10 @@ SLIDE_IN_THE_FOREARM = [
     ("0 0 -0.254", "0 0 0"), ("-0.106 0.09 0", f"{pi / 2} 0 0"), ("-0.255 -0.385 0", f"{pi / 2} 0 0"),
     ("0.152 0 0", f"{-pi / 2} 0 0"), ("0 -0.362 0", f"{-pi / 2} 0 0"), ("-0.321 0.181 0", f"{pi / 2} 0 0"),
 ]  # fmt: skip
+OFF_THE_WRIST = [
+    ("0 0 0.1", "0 0 0"), ("0 0 0", "0 0 0"), ("0.04 0 0.11", "0 0 0"), ("0.16 0 0", "0 0 0"),
+    ("0.03 0 0", "0 0 0"),
+]  # fmt: skip
 
 
 @PYTHON_OFTEN
@@ -43,6 +47,26 @@ def test_a_direction_is_told_that_the_digits_of_a_double_root_leave(
     gaps = np.abs(under.difference(trial.rows.q, q[:, None])).max(axis=2)
     missed = np.flatnonzero(np.nanmin(gaps, axis=1) > 1e-3)
     assert not len(missed), (len(missed), q[missed[0]].tolist())
+
+
+@PYTHON_OFTEN
+def test_a_pose_is_answered_where_roots_that_nearly_meet_leave_few_digits_of_a_divisor(
+    language: str, tmp_path: Path
+) -> None:
+    """Of a table top arm with its tool 2 mm off the wrist, its quartic's roots times 600: the divisor,
+    1e-4, is just not small enough to be told, and no row is within 1e-3 before steps are taken."""
+    robot = serial_urdf(
+        tmp_path / "table_top.urdf", OFF_THE_WRIST, tip=("0.09 -0.0016 0", "0 0 0"),
+        axes=["0 0 1", "0 1 0", "0 1 0", "0 1 0", "1 0 0"], limit=3.3,
+    )  # fmt: skip
+    derivation = derive(Request(robot))
+    under, random = arm_of(derivation), np.random.default_rng(0)
+    q = random.uniform(-3.0, 3.0, (1000, 5))
+    q[:, 4] = random.choice([-1, 1], 1000) * (pi / 2 + random.uniform(0.9e-4, 1.2e-4, 1000))
+    sample = SampleSet("roots that meet", q, under.oracle.forward(q), under.sigma(q))
+    trial = run_trial(runner_of(derivation, language, tmp_path), under, sample, limits=True)
+    nothing = np.flatnonzero(trial.rows.count == 0)
+    assert not len(nothing), (len(nothing), q[nothing[0]].tolist())
 
 
 @PYTHON_OFTEN

@@ -24,21 +24,36 @@ def guards(work: Placement) -> list[Requirement]:
 def test_squares_are_bounded_by_the_tolerance_s() -> None:
     work = two_joints()
     g, part = work.g, work.g.add(work.g.const(0.5), work.system.equations[0].left)
-    _bounded(work, [part, part], 1e-3, 1.0)
+    _bounded(work, [part, part], 1e-3, 2.0)
     (guard,) = guards(work)
     most, total = guard.condition.args
     assert guard.condition.op == "gt" and total is g.dot([part, part], [part, part])
     assert work.residuals == [total]
-    assert most.probe[0] == pytest.approx(1e-6)
-    _bounded(work, [], 1.0, 1.0)
+    assert most.probe[0] == pytest.approx(4e-6)
+    _bounded(work, [], 1.0)
     assert len(work.residuals) == 1
-    work.loses_digits = True
     work.note_fold(part, 1.0)
-    _bounded(work, [part, part], 1e-5, 1e-2)
+    work.singular.append(g.binary("gt", g.const(0.1), part))
+    _bounded(work, [part], 1e-5)
     _, wide, plain = guards(work)[-1].condition.args[0].args
     assert wide.probe[0] == pytest.approx(1e-4) and plain.probe[0] == pytest.approx(1e-10)
-    _bounded(work, [part], 1e-2, 1e-2)
-    assert guards(work)[-1].condition.args[0].probe[0] == pytest.approx(1e-4)
+
+
+def test_where_digits_are_lost_all_along_a_double_root_widens_the_bound_further() -> None:
+    """A vanishing divisor does not: its branches are starts without holding."""
+    work = two_joints()
+    g, part = work.g, work.g.add(work.g.const(0.5), work.system.equations[0].left)
+    work.loses_digits = True
+    work.note_fold(part, 1.0)
+    _bounded(work, [part], 1e-5)
+    close, wide, plain = guards(work)[-1].condition.args[0].args
+    assert close is work.close[0]
+    assert wide.probe[0] == pytest.approx(1.0) and plain.probe[0] == pytest.approx(1e-6)
+    work.singular.append(g.binary("gt", g.const(0.1), part))
+    _bounded(work, [part], 1e-5)
+    singular, vanishing, other = guards(work)[-1].condition.args[0].args
+    assert singular is work.singular[0] and vanishing.probe[0] == pytest.approx(1e-4)
+    assert other.args[0] is close
 
 
 @pytest.mark.parametrize(("loses_digits", "times"), [(False, 1.0), (True, 1000.0)])

@@ -43,27 +43,36 @@ def require_closure(work: Placement) -> None:
     residuals = min((_residuals(work, k, m) for k, m in splits), key=cost)
     work.place(Comment("does the row reproduce the pose?"))
     limit = max(CHECK_TOLERANCE, min(1000 * work.model_error, 0.2))
-    where_lost = _WIDER * limit
-    if work.loses_digits:
-        limit = max(limit, _WIDER * CHECK_TOLERANCE)
     size = max(arm_size(work.dh), 1.0)
     for level in range(len(work.levels)):
         norms = [e for e in work.norms if work.level(e) == level]
-        _bounded(work, norms, limit, where_lost)
+        _bounded(work, norms, limit)
     for parts, scale in zip(residuals, (size, 1.0), strict=True):
-        _bounded(work, parts, scale * limit, scale * where_lost)
+        _bounded(work, parts, limit, scale)
 
 
-def _bounded(work: Placement, parts: list[Expr], tolerance: float, where_lost: float) -> None:
-    """Squared parts are bounded by the tolerance's square, and wider where a divisor, or what a root is
-    taken of, nearly vanishes."""
-    if parts:
-        g, rough = work.g, either(work.g, dict.fromkeys((*work.singular, *work.close)))
-        total, most = g.dot(parts, parts), g.const(tolerance**2)
-        if rough is not None and where_lost > tolerance:
-            most = g.select(rough, g.const(where_lost**2), most)
-        work.require_solution(g.binary("gt", most, total))
-        work.residuals.append(_counted(work, parts, total))
+def _bounded(work: Placement, parts: list[Expr], limit: float, scale: float = 1.0) -> None:
+    """Squared parts are bounded by the square of the limit, times a scale, and wider where a divisor, or
+    what a root is taken of, nearly vanishes. Where the Program loses digits all along the limit is wider
+    everywhere, and there again for roots alone: a vanishing divisor's branches that do not hold are starts
+    of Newton steps as well, unless others hold."""
+    if not parts:
+        return
+    g = work.g
+    limits = [limit, max(limit, _WIDER * CHECK_TOLERANCE) if work.loses_digits else limit]
+    here, wide = (
+        g.const((scale * limits[1]) ** 2),
+        [g.const((scale * _WIDER * x) ** 2) for x in limits],
+    )
+    most, total = here, g.dot(parts, parts)
+    wider = {either(g, dict.fromkeys((*work.singular, *work.close))): wide[0]}
+    if wide[0] is not wide[1]:
+        wider = {either(g, work.close): wide[1], either(g, work.singular): wide[0]}
+    for condition, bound in wider.items():
+        if condition is not None:
+            most = g.select(condition, bound, most)
+    work.require_solution(g.binary("gt", most, total))
+    work.residuals.append(_counted(work, parts, total))
 
 
 def _counted(work: Placement, parts: list[Expr], total: Expr) -> Expr:
