@@ -11,7 +11,7 @@ from ikgen.elimination.elimination_table import finder
 from ikgen.elimination.loop_frames import forward, hold_joint, typical_length
 from ikgen.elimination.plan import _separate, choose_plan, ranking
 from ikgen.elimination.probing import digits_lost
-from ikgen.elimination.resultant import root_shifts
+from ikgen.elimination.resultant import RESULTANTS, root_shifts, roots_shared
 from ikgen.elimination.routine import FirstRun, Plan, first_runs
 from ikgen.runtime.python.elimination.general_6r import candidates
 
@@ -131,3 +131,25 @@ def test_a_held_joint_that_makes_axes_parallel_leaves_the_first_elimination_its_
         said = [candidates(held[:, None], poses, e, plan.turning)[2] for e in plan.eliminations]
         assert np.min(said) >= 0
         assert (candidates(held[:, None], poses, elsewhere, plan.turning)[2] == -1).all()
+
+
+def test_no_resultant_is_kept_of_which_one_root_is_two_solutions() -> None:
+    """The sides of an elbow between parallel axes have the other three angles in common."""
+    shared = roots_shared(
+        [np.array([[0.1, 0.2, 0.3, 0.4, 0.5, 0.6], [0.1, 0.2, 0.3, -0.4, 1.3, 0.2]])]
+    )
+    alike = {plan for plan, both in zip(RESULTANTS, shared[:, 0], strict=True) if both}
+    assert alike == {(4, 0), (5, 0), (0, 0), (2, 1), (3, 1), (4, 1)}
+    once = np.array([[0.1, 0.2, 0.3, 0.4, 0.5, 0.6]])
+    assert not roots_shared([np.concatenate([once, once + 1e-9, once + 2.0 * np.pi])]).any()
+    a, d = [0.0, 0.1, 0.2, 0.3, 0.25, 0.05], [0.0, 0.05, 0.1, 0.0, 0.02, 0.1]
+    frames = dh_frames([0.0, -1.1, 0.9, 0.0, 0.0, 1.2], a, d)
+    plan = choose_plan(frames)
+    find, poses = finder(plan.turning), forward(frames, configurations(frames, 12))
+    runs = first_runs(
+        frames, [Plan(plan.length, (e,), plan.turning, find) for e in plan.eliminations], poses
+    )
+    shared = roots_shared([np.concatenate([run.rows[i] for run in runs]) for i in range(12)])
+    lost = {RESULTANTS[k] for k in np.flatnonzero(shared.any(axis=1))}
+    assert lost == {(3, 0), (4, 0), (5, 0), (1, 1), (2, 1), (3, 1)}
+    assert plan.resultants and not lost & {*plan.resultants}

@@ -25,7 +25,7 @@ from ikgen.elimination.elimination_table import (
 from ikgen.elimination.loop_frames import forward, jacobian, over, typical_length
 from ikgen.elimination.parallel_plans import ParallelPlan, choose_parallel
 from ikgen.elimination.probing import Probe, distinct_of_runs, joined, probe_of
-from ikgen.elimination.resultant import RESULTANTS, Resultant, root_shifts
+from ikgen.elimination.resultant import RESULTANTS, Resultant, root_shifts, roots_shared
 from ikgen.elimination.routine import Elimination, Plan, Turning, first_runs
 from ikgen.kinematics.rigid import read_only
 from ikgen.model.arrays import Array
@@ -226,10 +226,12 @@ def _probe(frames: Array, every: Sequence[Plan], count: int, rng: np.random.Gene
         return Probe(hits, none, none, np.ones(len(RESULTANTS)))
     poses = forward(frames, q, turning)
     runs = first_runs(frames, every, poses)
-    unions = [distinct_of_runs([run.rows[i] for run in runs], turning) for i in range(len(poses))]
+    rows = [[run.rows[i] for run in runs] for i in range(len(poses))]
+    unions = [distinct_of_runs(each, turning) for each in rows]
     shifts = np.ones((len(RESULTANTS), 1))
     if all(turning):
         shifts = root_shifts(over(frames, length), over(poses, length), q)
+        shifts[roots_shared([np.concatenate(each) for each in rows])] = 1.0
     hits = np.concatenate(unions, axis=1)
     return probe_of(runs, hits, np.quantile(shifts, 0.75, axis=1))
 

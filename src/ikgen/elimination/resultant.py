@@ -1,14 +1,15 @@
 """Which hidden angles suit an arm in the elimination's resultant, a trigonometric polynomial of degree 8.
 
 The closed loop may be begun at any joint and run backwards: twelve polynomials f, each in another
-angle or with other equations. On special geometry some have double roots for every pose, and some
-are small on part of the circle, where rounding moves their roots: a property of the arm, hence
-found at generation time. Which of the two angles next to the hidden one has the second degree
-changes f by a constant only.
+angle or with other equations. On special geometry some have double roots for every pose, or simple
+ones that two solutions share, and some are small on part of the circle, where rounding moves their
+roots: a property of the arm, hence found at generation time. Which of the two angles next to the
+hidden one has the second degree changes f by a constant only.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import product
 
 import numpy as np
@@ -17,7 +18,7 @@ from ikgen.model.arrays import Array
 from ikgen.runtime.python.elimination.hidden_angle import loop_pencil
 from ikgen.runtime.python.elimination.loop_equations import loop_constants, loop_equations
 
-__all__ = ["RESULTANTS", "Resultant", "root_shifts"]
+__all__ = ["RESULTANTS", "Resultant", "root_shifts", "roots_shared"]
 
 Resultant = tuple[int, int]
 """The joint that the loop begins at (0-based), and whether it is reversed."""
@@ -29,6 +30,7 @@ _NODES = 24
 _FIRST = 0.1  # rad, an angle that no right angle shares
 _DEGREE = 8
 _NOISE = 11.0  # times the norm of what a polynomial of degree 8 has not: as in the emitted code
+_ALIKE, _APART = 1e-7, 1e-3  # rad; of what two solutions share, and of what tells them apart
 _ROUNDING = 5e-13
 """Share of the coefficients, at least: rounding alone reaches it hardly ever. What it really is, is another
 on every processor, and choices would be with it."""
@@ -41,6 +43,21 @@ def root_shifts(frames: Array, poses: Array, q: Array) -> Array:
     A double root counts as moved by 1 rad.
     """
     return np.array([_shifts(frames, poses, q, plan) for plan in RESULTANTS])
+
+
+def roots_shared(rows: Sequence[Array]) -> Array:
+    """Whether two solutions of a pose have one hidden angle, (12, N), of rows (k, 6) in rad for each.
+
+    As both sides of an elbow they may have the two angles next to it in common too: then it is a simple
+    root, of which one of them is found.
+    """
+    hidden = [(start + (-2 if reverse else 2)) % 6 for start, reverse in RESULTANTS]
+    shared = np.zeros((len(RESULTANTS), len(rows)), dtype=bool)
+    for i, q in enumerate(rows):
+        gap = np.abs(np.remainder(q[:, None] - q + np.pi, 2.0 * np.pi) - np.pi)
+        alike = (gap < _ALIKE) & (gap.max(axis=2, keepdims=True) > _APART)
+        shared[:, i] = alike.any(axis=(0, 1))[hidden]
+    return shared
 
 
 def _shifts(frames: Array, poses: Array, q: Array, plan: Resultant) -> Array:
