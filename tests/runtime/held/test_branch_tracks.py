@@ -24,6 +24,7 @@ from ikgen.runtime.python.held.branch_tracks import (
 from ikgen.runtime.python.held.held_joint import Rows
 
 ARM = SimpleNamespace(
+    most=2,
     moving=(0,),
     lower=np.array([-1.0]),
     upper=np.array([3.0]),
@@ -182,6 +183,7 @@ def test_smooth_rows_need_no_more_samples(monkeypatch: pytest.MonkeyPatch) -> No
         joint = joint_of(monkeypatch, lambda h: [(curved(h), 1.0)], guarded=guarded)
         tracks = tracked(joint, np.eye(4), -1.0, 1.0, True)
         assert len(tracks.rows.held) == count and (tracks.links == 0).all()
+        assert tracks.least == pytest.approx(2e-5)
         assert tracks.inside.all() and tracks.rows.held[0] == -1.0 and tracks.rows.held[-1] == 1.0
 
 
@@ -210,6 +212,22 @@ def test_a_quick_turn_a_fold_and_a_limit_are_closed_in_on(monkeypatch: pytest.Mo
     np.testing.assert_allclose(tracks.off[-1, 0], 0.5 * 0.69, atol=1e-9)
 
 
+def test_rows_that_come_and_go_without_end_are_not_looked_at_without_end(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """As rounding leaves them where an elbow is stretched at every value of the held joint."""
+
+    def straying(h: float) -> list[tuple[float, float]]:
+        return [(curved(h), math.sin(1e7 * h)), (curved(h) + 0.01, math.cos(2.7e7 * h))]
+
+    tracks = tracked(joint_of(monkeypatch, straying), np.eye(4), -1.0, 1.0, True)
+    held = tracks.rows.held
+    assert 1000 < len(held) < 1300 and tracks.least == pytest.approx(2e-3)
+    monkeypatch.setattr(branch_tracks, "_FINE", 1000)
+    more = tracked(joint_of(monkeypatch, straying), np.eye(4), -1.0, 1.0, True).rows.held
+    assert len(more) > 2.0 * len(held)
+
+
 def test_a_row_that_may_touch_a_limit_twice_is_looked_at_closely(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -228,7 +246,7 @@ def test_a_row_that_comes_to_a_limit_is_inside_and_crosses_it_once(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     exact = SimpleNamespace(
-        moving=(0,), lower=np.array([-1.0]), upper=np.array([1.0]), period=ARM.period,
+        most=1, moving=(0,), lower=np.array([-1.0]), upper=np.array([1.0]), period=ARM.period,
         policy=SimpleNamespace(limit_tolerance=0.0), rounded=False,
     )  # fmt: skip
     linked = np.ones((1, 1), dtype=bool)

@@ -30,7 +30,7 @@ def tracks_of(*lanes: str, held: Array = HELD) -> Tracks:
     rows = Rows(held, q, real, np.where(real, 1.0, -1.0)[:, :, None])
     lane = np.arange(len(lanes))
     links = np.where(real[:-1] & real[1:], lane, -1)
-    return Tracks(rows, links, np.where(inside, -1.0, 1.0), inside)
+    return Tracks(rows, links, np.where(inside, -1.0, 1.0), inside, 1e-5 * (held[-1] - held[0]))
 
 
 def joint_of(guarded: bool = True, most: int = 8, **more: Any) -> Any:
@@ -116,3 +116,16 @@ def test_beyond_a_limit_the_branch_goes_on() -> None:
     end = branch_end(joint_of(guarded=False), tracks, origins(tracks.links), (2, 0), (3, 0))
     assert not end.at_fold and end.then == 2.4 and end.there is not None
     np.testing.assert_array_equal(end.there, tracks.rows.q[3, 0])
+
+
+def test_of_too_many_the_widest_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    held = np.linspace(0.0, 1.0, 101)
+    lane = "x." * 25 + "xxx." + "x." * 23 + "x"
+    every, _ = pieces(monkeypatch, joint_of(most=8), tracks_of(lane, held=held))
+    kept, _ = pieces(monkeypatch, joint_of(most=1), tracks_of(lane, held=held))
+    assert (len(every), len(kept)) == (50, 16)
+    samples = [piece.samples for piece in every]
+    assert [piece.samples for piece in kept] == sorted(piece.samples for piece in kept)
+    assert ((50, 0), (51, 0), (52, 0)) in [piece.samples for piece in kept] and {*samples} > {
+        piece.samples for piece in kept
+    }

@@ -8,13 +8,17 @@ namespace ikgen_runtime {
 
 // Arm: as for HeldSample; kGuarded, whether its margins are all that makes rows come and go. Visit: first(sample),
 // cell(before, a, b, links, after): links.next[lane], the lane of b that each of a goes on as, -1 for none; before and
-// after, the samples beyond.
+// after, the samples beyond; fine, how many cells narrower than kNarrow were halved.
 template <class Arm> struct HeldSweep {
   using Sample = HeldSample<Arm>;
   using Links = BranchLinks<Arm>;
   using Beside = BesideCell<Arm>;
   static constexpr int kCells = Arm::kGuarded ? 64 : 512;
   static constexpr double kFixed = 1e-9;  // a joint with no more range is pinned, and has one cell, which is not halved
+  // Of cells narrower than kNarrow so many are halved, a share of them anywhere and the others as the range is swept. Where
+  // rounding leaves rows at some values and none at others, as with a stretched elbow, there is always more to see.
+  static constexpr int kFine = 64 * Arm::kMaxSolutions;
+  static constexpr double kAnywhere = 0.25;
 
   const Eigen::Isometry3d& pose;
   JointBounds<Arm> bounds;
@@ -81,8 +85,12 @@ template <class Arm> struct HeldSweep {
   template <class Visit>
   void cell(const Beside& before, const Sample& a, const Sample& b, const Links& links, const Beside& after,
             Visit& visit) const noexcept {
-    if (fixed() || !HeldDoubts<Arm>{bounds, high - low, before, after, a, b, links}.any())
+    const double width = b.held - a.held, share = kAnywhere + (1.0 - kAnywhere) * (a.held - low) / (high - low);
+    const bool narrow = !(width > HeldDoubts<Arm>::kNarrow * (high - low));
+    if (fixed() || (narrow && visit.fine > share * kFine) ||
+        !HeldDoubts<Arm>{bounds, high - low, before, after, a, b, links}.any())
       return visit.cell(before, a, b, links, after);
+    visit.fine += narrow;
     const Sample middle = at(0.5 * (a.held + b.held));
     const Links up(a, middle), on(middle, b);
     cell(before, a, middle, up, {&b, &on}, visit);

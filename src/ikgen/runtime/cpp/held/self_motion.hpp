@@ -16,7 +16,7 @@ template <class Arm, class Record> struct BranchFollower {
   static constexpr int kLanes = Sample::kLanes;
   const HeldSweep<Arm>& sweep;
   Record& record;
-  int branch[kLanes], branches = 0;
+  int branch[kLanes], branches = 0, fine = 0;
   bool any = false;
 
   BranchFollower(const HeldSweep<Arm>& values, Record& to) noexcept : sweep(values), record(to) {}
@@ -86,7 +86,9 @@ template <class Arm, class Record> struct BranchFollower {
   }
 
   bool narrow(double low, double high) const noexcept {
-    return high - low < 4.0 * HeldDoubts<Arm>::kLeast * (sweep.high - sweep.low);
+    constexpr double few = HeldSweep<Arm>::kAnywhere * HeldSweep<Arm>::kFine;
+    const double least = fine > few ? HeldDoubts<Arm>::kNarrow : HeldDoubts<Arm>::kLeast;
+    return high - low < 4.0 * least * (sweep.high - sweep.low);
   }
 
   // Branches and beginnings to the lanes in which they go on; rows without one begin branches.
@@ -163,15 +165,23 @@ template <class Arm> struct SelfMotionFinder {
       }
   }
   void close(int lane, double at, const double*, bool) noexcept {
-    if (out.count == Arm::kMaxIntervals) {
-      out.complete = false;
-      return;
-    }
+    if (out.count == Arm::kMaxIntervals && !leave_out_narrowest(at - start[lane])) return;
     int k = out.count++;
     auto* list = out.intervals.data();
     for (; k > 0 && (list[k - 1].branch > branch[lane] || (list[k - 1].branch == branch[lane] && list[k - 1].low > start[lane])); --k)
       list[k] = list[k - 1];
     list[k] = {start[lane], at, branch[lane]};
+  }
+
+  // Makes room for an interval if there is a narrower one.
+  bool leave_out_narrowest(double width) noexcept {
+    const auto first = out.intervals.begin(), end = first + out.count;
+    const auto narrowest = std::min_element(first, end, [](const auto& a, const auto& b) { return a.high - a.low < b.high - b.low; });
+    out.complete = false;
+    if (!(narrowest->high - narrowest->low < width)) return false;
+    std::copy(narrowest + 1, end, narrowest);
+    --out.count;
+    return true;
   }
 
   // Branches without an interval do not count.

@@ -17,7 +17,7 @@ from ikgen.runtime.python.arrays.array_types import Array, Flags, Index
 from ikgen.runtime.python.held.held_joint import HeldJoint, Rows, merged_rows, rows_at
 from ikgen.runtime.python.rows.row_links import differences, linked_rows, origins
 
-__all__ = ["LEAST", "Tracks", "tracked"]
+__all__ = ["Tracks", "tracked"]
 
 _CELLS = 64  # cells to begin with
 _UNGUARDED_CELLS = 512  # cells to begin with where nothing tells of folds between samples
@@ -27,19 +27,23 @@ _FIXED = (
 _SAFETY = 4.0  # bounds of what second differences tell are taken that many times
 _SMOOTH = 0.05  # rad or m by which a row may bend between samples
 _ROUND_OFF = 1e-12  # rad or m, of joint values
-LEAST = 1e-5  # share of the range: cells that narrow are not halved
+_LEAST = 1e-5  # share of the range: cells that narrow are not halved
 _NARROW = 1e-3  # share of the range: cells that narrow are not halved where rows begin or end
+# Times the rows of a pose: so many narrower cells are halved. Where rounding leaves rows at some values and
+# none at others, as with a stretched elbow, there is always more to see.
+_FINE = 64
 
 
 @dataclass(frozen=True)
 class Tracks:
     """Rows and what each goes on as; how far each is outside the limits, `off` (n, m), and whether it is
-    real and inside, `inside` (n, m)."""
+    real and inside, `inside` (n, m); cells of which width are halved no more, `least`."""
 
     rows: Rows
     links: Index
     off: Array
     inside: Flags
+    least: float
 
 
 def tracked(joint: HeldJoint, T: Array, low: float, high: float, limits: bool) -> Tracks:
@@ -48,13 +52,20 @@ def tracked(joint: HeldJoint, T: Array, low: float, high: float, limits: bool) -
     fixed = not high - low > _FIXED
     cells = 1 if fixed else _CELLS if joint.guarded else _UNGUARDED_CELLS
     rows = rows_at(joint, T, np.linspace(low, high, cells + 1))
+    left = _FINE * arm.most
     while True:
         following = linked_rows(arm, rows.q, rows.real, joint.guarded)
         held = rows.held
         middle = 0.5 * (held[1:] + held[:-1])
-        if fixed or not len(middle := middle[_doubtful(joint, rows, following, limits)]):
+        if not fixed:
+            doubtful = _doubtful(joint, rows, following, limits)
+            fine = doubtful & (np.diff(held) <= _NARROW * (high - low))
+            left -= np.count_nonzero(fine)
+            middle = middle[doubtful & (~fine | (left >= 0))]
+        if fixed or not len(middle):
             off = outside(arm, rows.q, limits) - arm.policy.limit_tolerance
-            return Tracks(rows, following, off, rows.real & (off <= 0.0))
+            least = (_LEAST if left >= 0 else _NARROW) * (high - low)
+            return Tracks(rows, following, off, rows.real & (off <= 0.0), least)
         rows = merged_rows(rows, rows_at(joint, T, middle))
 
 
@@ -63,7 +74,7 @@ def _doubtful(joint: HeldJoint, rows: Rows, following: Index, limits: bool) -> F
     arm = joint.arm
     width = np.diff(rows.held)
     span = rows.held[-1] - rows.held[0]
-    wide, narrow = width > _NARROW * span, width > LEAST * span
+    wide, narrow = width > _NARROW * span, width > _LEAST * span
     q, change, bend = _row_bends(arm, rows, following)
     linked = following >= 0
     out = (linked & (bend.max(axis=2) > _SMOOTH)).any(axis=1) & narrow

@@ -25,6 +25,8 @@ from ikgen.runtime.python.solving.pose_solving import solve_pose
 
 __all__ = ["search_interval"]
 
+_WAITING = 64  # minima that are looked at, the lowest
+
 
 def search_interval(
     joint: HeldJoint, pose: Any, seed: ArrayLike | None, prefer: str, limits: bool
@@ -52,8 +54,10 @@ def _best_rows(joint: HeldJoint, T: Array, preference: Preference, limits: bool)
         interval += [k] * (len(starts) - len(interval))
     if not starts:
         return no_held_values(len(arm.lower), arm.free_joints, bool(tracks.rows.real.any()))
-    rows, cost = improved_rows(arm, T, starts, preference, limits)
-    best = _best_of_each(np.array(interval), cost)[: arm.most]
+    given = preference_costs(arm, preference, np.array([[s[1]] for s in starts]), limits)[1][:, 0]
+    lowest = np.sort(np.argsort(given, kind="stable")[:_WAITING])
+    rows, cost = improved_rows(arm, T, [starts[k] for k in lowest], preference, limits)
+    best = _best_of_each(np.array(interval)[lowest], cost)[: arm.most]
     return solutions_of(arm, T, rows[best], preference, limits)
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from ikgen.runtime.python.arrays.array_types import Array, Index
 from ikgen.runtime.python.held.branch_ends import BranchEnd, branch_end, find_ends
-from ikgen.runtime.python.held.branch_tracks import LEAST, Tracks, tracked
+from ikgen.runtime.python.held.branch_tracks import Tracks, tracked
 from ikgen.runtime.python.held.held_joint import HeldJoint, held_range, pose_lines, rows_at
 from ikgen.runtime.python.held.lone_value import lone_row
 from ikgen.runtime.python.rows.row_links import differences, origins
@@ -20,8 +20,9 @@ from ikgen.runtime.python.solving.pose_solving import solve_pose
 __all__ = ["Interval", "Piece", "pieces_of", "self_motion_of"]
 
 _FEW = 4  # least cells
-# Times the rows of a pose: ends of more that are narrower are left where they were seen.
-_SLIVERS = 2
+# Times the rows of a pose: ends of more that are narrower are left where they were seen, and of more pieces
+# only the widest are kept.
+_SLIVERS, _MOST = 2, 16
 
 
 @dataclass(frozen=True)
@@ -89,8 +90,10 @@ def _lone_interval(joint: HeldJoint, T: Array, limits: bool) -> tuple[Interval, 
 def pieces_of(joint: HeldJoint, T: Array, tracks: Tracks, limits: bool) -> list[Piece]:
     """The intervals with their samples, ends found, by branch and value."""
     pieces = list(_pieces(joint, tracks))
-    least = _FEW * LEAST * (tracks.rows.held[-1] - tracks.rows.held[0])
-    wide = [piece for piece in pieces if piece.width() > least]
+    if len(pieces) > (most := _MOST * joint.arm.most):
+        widest = sorted(range(len(pieces)), key=lambda k: -pieces[k].width())[:most]
+        pieces = [pieces[k] for k in sorted(widest)]
+    wide = [piece for piece in pieces if piece.width() > _FEW * tracks.least]
     looked = pieces if len(pieces) - len(wide) <= _SLIVERS * joint.arm.most else wide
     ends = [x for piece in looked for x in (piece.low, piece.high) if isinstance(x, BranchEnd)]
     find_ends(joint, T, ends, limits)
