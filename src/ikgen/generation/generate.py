@@ -163,7 +163,8 @@ def _incomplete(failed: VerificationError, request: Request) -> IkgenError:
 def _emitted(
     derivation: Derivation, emitters: Sequence[Emitter], outputs: Outputs, progress: Progress
 ) -> tuple[dict[str, dict[str, str]], dict[str, VerificationReport]]:
-    """The texts of all outputs but those that tell the verification, and the verification."""
+    """The texts of all outputs but those that tell the verification, and the verification: where none of
+    them runs, that of a Python module which is not written."""
     made: dict[str, dict[str, str]] = {}
 
     def emit(emitter: Emitter) -> dict[str, str]:
@@ -178,5 +179,7 @@ def _emitted(
             (run if outputs.verify and emitter.runner_target else other).append(emitter)
     for emitter in other:
         emit(emitter)
+    if outputs.verify and not run:
+        run.append(find_emitter("python"))
     reports = verify_emitted(derivation, run, emit, outputs, progress) if run else {}
     return {one.name: made[one.name] for one in emitters if one.name in made}, reports

@@ -119,6 +119,7 @@ class _Run:
 
 
 _TEXT = "the text of the description"
+_EARLIER = "made from an earlier description"
 
 
 def _changed_files(record: Record) -> str:
@@ -147,7 +148,10 @@ def _checked(record: Record, reading: Reading, run: _Run) -> Recheck:
             f"{record.request.robot}, then {fix}",
         )
         # what cannot run cannot show that only a remark changed
-        old = Finding(record.path, "made from an earlier description", fix)
+        old = Finding(record.path, _EARLIER, fix)
         return Recheck(record.path, record, (old, missing) if changed else (missing,), notes)
     found = run.checked(record, reading)
-    return Recheck(record.path, record, found.findings, notes, found.reports)
+    findings = found.findings
+    if changed and not findings and not found.reports:
+        findings = (Finding(record.path, _EARLIER, fix),)  # nothing ran that could show otherwise
+    return Recheck(record.path, record, findings, notes, found.reports)
