@@ -2,7 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
+from tests.support.redundant_arms import (
+    LIFT_SCARA,
+    OFFSET_ELBOW,
+    serial_urdf,
+)
 from tests.support.sampled import sampled
 from tests.support.solving import FIXTURES
 
@@ -59,3 +66,20 @@ def test_steps_of_more_than_two_branches_come_later_whatever_their_leaf_is_calle
     several = Attempt("pose", (), True, 4, step, (), two_branch=False)
     few = Attempt("pose", (), True, 8, ("theta_1 (no quartic)",), ())
     assert few.rank < several.rank
+
+
+@pytest.fixture(params=["fr3", "elbow", "lift"])
+def redundant(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
+    """The file of an arm with a joint to hold; the second choice of one has a quartic, its third none."""
+    if request.param == "fr3":
+        return FIXTURES / "franka_fr3.urdf"
+    path = tmp_path / "arm.urdf"
+    path.write_text(serial_urdf("arm", OFFSET_ELBOW if request.param == "elbow" else LIFT_SCARA))
+    return path
+
+
+def test_joints_to_hold_come_in_the_order_of_the_derivation(redundant: Path) -> None:
+    held = derive(Request(redundant)).held
+    assert held is not None
+    shown = [one.held for one in inspect_robot(Request(redundant)).attempts]
+    assert shown == [held.joints, *held.others][: len(shown)]

@@ -163,9 +163,9 @@ def test_choice_is_explained_and_inspect_lists_it_first() -> None:
     assert derivation.module.free_indices == (6,)
     tried = attempts(read(Request(FR3)), None, silent)
     assert tried[0].held == derivation.held.joints and tried[0].closed
-    assert {one.held for one in tried[1:]} == {("fr3_joint4",), ("fr3_joint6",)}
+    assert [one.held for one in tried[1:]] == [("fr3_joint6",), ("fr3_joint4",)]
     steps = [" ".join(one.order) for one in tried]
-    assert ["quartic" in text for text in steps] == [False, False, True]
+    assert ["quartic" in text for text in steps] == [False, True, False]
 
 
 def test_named_joint_wins_and_gives_the_same_module_as_the_choice() -> None:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from ikgen.derivation.closed_forms import closed_form, forms_held, preference, taken_form
+from ikgen.derivation.closed_forms import closed_form, forms_held
 from ikgen.derivation.held_joints import HeldChoice, held_choices
 from ikgen.derivation.held_needs import needs_held
 from ikgen.derivation.progress import Progress
@@ -123,14 +123,8 @@ def _other_tasks(reading: Reading, taken: str, demand: Demand) -> list[Attempt]:
 def _attempts_held(
     reading: Reading, choices: Sequence[HeldChoice], demand: Demand
 ) -> list[Attempt]:
-    """Attempts in the order in which `closed_form` prefers them, until enough of them are closed."""
-    tried: list[tuple[HeldChoice, ClosedForm]] = []
-    for choice, form in forms_held(reading, choices, demand):
-        tried.append((choice, form))
-        if sum(form.sound for _, form in tried) == _ENOUGH:
-            break
-    tried.sort(key=lambda pair: preference(*pair))
-    taken = taken_form(tried, demand)
+    """What `closed_form` takes first, then the choices in their order, until enough of them are closed."""
+    tried, taken = forms_held(reading, choices, demand, sound=_ENOUGH)
     others = [pair for pair in tried if taken is None or pair[0].held != taken[0].held]
     forms = [(choice, as_written(form, demand)) for choice, form in others]
     found = [

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from itertools import groupby
+from itertools import groupby, zip_longest
 from typing import TYPE_CHECKING
 
 from ikgen.derivation.held_joints import (
@@ -35,10 +35,11 @@ __all__ = [
     "RULE_TRIES",
     "closed_form",
     "forms_held",
-    "preference",
     "rule_tries",
-    "taken_form",
 ]
+
+HeldForm = tuple[HeldChoice, ClosedForm]
+"""Joints to hold, and what the rules make of the others."""
 
 RULE_TRIES = 8
 """No more choices of joints to hold than these are derived. Their number counts, not the time they take:
@@ -154,24 +155,32 @@ def _with_joints_held(
 ) -> ClosedForm:
     """The first choice that the rules solve, two-branch forms before quartics; else the first that the
     elimination solves; else one with a weak step. None: the chain as it was asked for, unsolved."""
-    tried: list[tuple[HeldChoice, ClosedForm]] = []
-    for choice, form in forms_held(reading, choices, demand):
-        tried.append((choice, form))
-        later = choices[len(tried) :]
-        best = min(tried, key=lambda pair: preference(*pair))
-        if not later or (best[1].sound and preference(*best) <= _hoped(later[0])):
-            break
-    tried.sort(key=lambda pair: preference(*pair))
-    taken = taken_form(tried, demand)
+    tried, taken = forms_held(reading, choices, demand)
     if taken is None:
-        return replace(tried[0][1], reading=reading)
+        return replace(min(tried, key=_preferred)[1], reading=reading)
     choice, form = taken
     return _explained(form, choice, choices, demand.refused)
 
 
-def taken_form(
-    tried: Sequence[tuple[HeldChoice, ClosedForm]], demand: Demand
-) -> tuple[HeldChoice, ClosedForm] | None:
+def forms_held(
+    reading: Reading, choices: Sequence[HeldChoice], demand: Demand, *, sound: int = 1
+) -> tuple[list[HeldForm], HeldForm | None]:
+    """What the rules make of the choices, in their order, and which is taken, settled: None where no joint
+    held gives a closed form. They are tried till none that is left can be taken, and till so many are
+    `sound`: how many are asked for does not change what is taken."""
+    tried: list[HeldForm] = []
+    tries = choices[: rule_tries(reading.dh)]
+    for choice, later in zip_longest(tries, tries[1:]):
+        demand.progress("derive", f"holding {choice.words}")
+        tried.append((choice, _by_rules_somewhere(replace(reading, dh=choice.dh), demand)))
+        best = min(tried, key=_preferred)
+        settled = later is not None and best[1].sound and _preferred(best) <= _hoped(later)
+        if settled and sum(form.sound for _, form in tried) >= sound:
+            break
+    return tried, _taken_form(sorted(tried, key=_preferred), demand)
+
+
+def _taken_form(tried: Sequence[HeldForm], demand: Demand) -> HeldForm | None:
     """Which of the forms, best first, is taken, settled; None where no joint held gives one. Those that
     solve for a joint which hardly moves come after all others."""
     for _, alike in groupby(tried, key=lambda pair: len(pair[0].idle)):
@@ -181,15 +190,13 @@ def taken_form(
     return None
 
 
-def _taken_of(
-    tried: Sequence[tuple[HeldChoice, ClosedForm]], demand: Demand
-) -> tuple[HeldChoice, ClosedForm] | None:
+def _taken_of(tried: Sequence[HeldForm], demand: Demand) -> HeldForm | None:
     """The choice to take of those that hold as many joints which hardly move. Of eliminations the first
     that is as quick at special values of the held joints as elsewhere."""
     choice, form = tried[0]
     if form.sound:
         return choice, _nearest_form(form, choice.dh, demand)
-    solved: tuple[HeldChoice, ClosedForm] | None = None
+    solved: HeldForm | None = None
     for other, open_form in tried:
         found = by_elimination(open_form, demand)
         if found.plan is None:
@@ -200,26 +207,18 @@ def _taken_of(
     return solved or ((choice, as_written(form, demand)) if form.closed else None)
 
 
-def forms_held(
-    reading: Reading, choices: Sequence[HeldChoice], demand: Demand
-) -> Iterator[tuple[HeldChoice, ClosedForm]]:
-    """What the rules make of each choice in turn, of no more than `rule_tries`."""
-    for choice in choices[: rule_tries(reading.dh)]:
-        demand.progress("derive", f"holding {choice.words}")
-        yield choice, _by_rules_somewhere(replace(reading, dh=choice.dh), demand)
-
-
 def rule_tries(dh: DHChain) -> int:
     """How many choices of joints to hold are derived for a chain, from 1 to `RULE_TRIES`."""
     return max(1, min(RULE_TRIES, RULE_TRIES * _FULL_TRIES_JOINTS**3 // dh.dof**3))
 
 
-def preference(choice: HeldChoice, form: ClosedForm) -> tuple[int, bool, bool, bool, bool]:
+def _preferred(held: HeldForm) -> tuple[int, bool, bool, bool, bool]:
     """What comes first of forms in the order of their choices: those that hold most joints which hardly
     move; of these sound ones, then those with a weak step; of either those that are not feeble, and of
     these those with two branches a step where the class lets expect them."""
     from ikgen.kinematics.form_class import is_two_branch
 
+    choice, form = held
     as_expected = is_two_branch(choice.form) and form.two_branch
     return -len(choice.idle), not form.sound, not form.closed, choice.feeble, not as_expected
 
