@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+from ikgen.library.argument_words import argument_words, in_argument_words
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
@@ -53,7 +55,7 @@ class ArmDerivation:
     @property
     def held(self) -> str:
         """Which joints ikgen chose to hold, and why; "" where it chose none."""
-        return "" if self.whole.held is None else self.whole.held.words
+        return "" if self.whole.held is None else argument_words(self.whole.held.words)
 
     @property
     def solutions(self) -> Mapping[Any, Any]:
@@ -80,6 +82,7 @@ def _symbolic() -> Any:
     return symbolic
 
 
+@in_argument_words()
 def derived_again(request: Request, entry: SolverEntry) -> Derivation:
     """The derivation of a solver that was made before: the same description gives the same."""
     from ikgen.derivation.derive import derive

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING
 
 from ikgen.derivation.progress import Progress, silent
+from ikgen.library.argument_words import in_argument_words
 from ikgen.library.load_arguments import checked_count, checked_flag, checked_request, wrong
 from ikgen.library.solver_cache import SolverCache, SolverEntry
 from ikgen.records.request import Outputs
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 __all__ = ["load"]
 
 
+@in_argument_words()
 def load(
     robot: str | os.PathLike[str],
     *,

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ikgen.errors import ArgumentError, UsageError
+from ikgen.library.argument_words import argument_words, in_argument_words
 from ikgen.library.load_arguments import checked_flag, checked_path, wrong
 from ikgen.library.memory_module import module_of
 from ikgen.model.counted import counted
@@ -124,7 +125,7 @@ class Arm:
     def warnings(self) -> tuple[str, ...]:
         """What was odd in the robot's file, and what has to be known of the solver: that its task asks more
         than the arm can do, say, or that a joint hardly moves."""
-        return self._entry.warnings
+        return tuple(map(argument_words, self._entry.warnings))
 
     def forward(self, q: ArrayLike) -> Array:
         """Poses (..., 4, 4) of the tip in the base at q (..., dof)."""
@@ -270,12 +271,14 @@ class Arm:
         """What the verification found: checks by name and as a table; None where it was left out."""
         return self._entry.report
 
+    @in_argument_words()
     def save(self, folder: Any, emit: str | Iterable[str] = ("python",)) -> tuple[Path, ...]:
         """Write outputs into a folder, each verified: the files. `emit` names outputs, as --emit does."""
         from ikgen.library.arm_files import save
 
         return save(self._request, self._outputs, checked_path("folder", folder), emit)
 
+    @in_argument_words()
     def report(self, file: Any) -> Path:
         """Write the derivation as a page (.html), LaTeX (.tex, .pdf) or the solution graph (.svg)."""
         from ikgen.library.arm_files import write_page

@@ -45,7 +45,7 @@ def joint_limits(
         return UNLIMITED, (Oddity("no lower and upper limit: taken as unlimited"),)
     low, high = lower or 0.0, upper or 0.0
     if low == high == 0.0:
-        text = "lower = upper = 0: taken as unlimited; --lock it if it cannot move"
+        text = f"lower = upper = 0: taken as unlimited; --lock {name}=0 if it cannot move"
         return UNLIMITED, (Oddity(text, name, OddityKind.LOCKABLE),)
     notes = []
     if lower is None or upper is None:
