@@ -82,3 +82,12 @@ def test_errors_of_the_library_say_arguments(
     with pytest.raises(IkgenError) as caught:
         ikgen.load(robot, **options, verify=False, cache=False)
     assert hint in caught.value.hint and "--" not in str(caught.value)
+
+
+def test_a_derivation_says_what_it_is_in_a_line() -> None:
+    arm = ikgen.load(UR5E, verify=False, cache=False)
+    assert repr(arm.derivation) == (
+        f"<ikgen derivation of ur5e: {arm.derivation.geometry.name}, "
+        f"{'; '.join(arm.derivation.order)}>"
+    )
+    assert len(repr(arm.derivation)) < 400

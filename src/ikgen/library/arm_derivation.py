@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["ArmDerivation", "derived_again"]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class ArmDerivation:
     """What lies between the robot's file and the solver; `whole` is all of it, as the stages hand it on."""
 
@@ -69,6 +69,11 @@ class ArmDerivation:
         """SymPy: an `Eq` of every matrix equation that was used."""
         found: tuple[Any, ...] = _symbolic().equations(self.whole)
         return found
+
+    def __repr__(self) -> str:
+        """The arm, its family and the order of solution: all that `whole` holds would be 100 kB."""
+        name, order = self.whole.module.name, "; ".join(self.order)
+        return f"<ikgen derivation of {name}: {self.geometry.name}, {order}>"
 
     def proof(self) -> Any:
         """Which of the equations and formulas are proved in exact arithmetic, and why others are not."""
