@@ -13,6 +13,10 @@
 
 #pragma once
 
+#if (defined(_MSVC_LANG) && _MSVC_LANG < 201703L) || (!defined(_MSVC_LANG) && __cplusplus < 201703L)
+#error "pan_lift_ik.hpp is C++17: compile it with -std=c++17 or later (MSVC: /std:c++17)"
+#else
+
 #if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__) || \
     defined(__ASSOCIATIVE_MATH__) || defined(_M_FP_FAST)
 #error "pan_lift_ik.hpp needs IEEE arithmetic: compile it without -ffast-math, or what is a part of it"
@@ -3711,3 +3715,5 @@ inline Path follow(const Eigen::Isometry3d* poses, std::ptrdiff_t count, const J
 #if defined(__GNUC__)
 #pragma GCC diagnostic pop
 #endif
+
+#endif  // C++17

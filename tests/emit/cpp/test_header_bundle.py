@@ -127,3 +127,13 @@ def test_other_arithmetic_than_of_doubles_is_refused(flag: str, tmp_path: Path) 
     (tmp_path / "pan_lift_ik.hpp").write_text(emit_header(pan_lift()))
     done = compile_text('#include "pan_lift_ik.hpp"\nint main() {}\n', tmp_path, flag)
     assert done.returncode != 0 and "pan_lift_ik.hpp needs IEEE arithmetic" in done.stderr
+
+
+@needs_compiler
+def test_an_older_standard_is_refused_without_more_words(tmp_path: Path) -> None:
+    (tmp_path / "pan_lift_ik.hpp").write_text(emit_header(pan_lift()))
+    text = '#include "pan_lift_ik.hpp"\nint main() {}\n'
+    done = compile_text(text, tmp_path, "-std=c++14")
+    assert done.returncode != 0 and "pan_lift_ik.hpp is C++17" in done.stderr
+    assert done.stderr.count("error:") == 1
+    assert compile_text(text, tmp_path, "-std=c++20").returncode == 0
