@@ -14,7 +14,7 @@ import ikgen
 from ikgen.cli.main import run
 from ikgen.errors import MissingToolError, UnknownNameError
 from ikgen.importers import load_tree, taken_arguments
-from ikgen.importers.named_robots import find_robot, is_named, robot_names
+from ikgen.importers.named_robots import find_robot, is_named, names_meant, robot_names
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 
@@ -144,3 +144,26 @@ def test_robot_descriptions_are_read_with_their_arguments(
     (folder / "elbow.urdf.xacro").write_text(text.replace("</robot>", f"{argument}</robot>"))
     assert taken_arguments("robot_descriptions:elbow") == {"hand": "none"}
     assert taken_arguments("robot_descriptions:knee") == {}
+
+
+@pytest.mark.parametrize(
+    ("typed", "meant"),
+    [
+        ("elbow", ("example-robot-data:elbow",)),
+        ("B1-Z1", ("example-robot-data:b1_z1",)),
+        ("example_robot_data:elbow", ("example-robot-data:elbow",)),
+        ("robot-descriptions:ur5e", ("robot_descriptions:ur5e",)),
+        ("C:robot", ()),
+        ("arm", ()),
+    ],
+)
+def test_what_is_meant_by_a_name_that_is_none_is_told(
+    typed: str, meant: tuple[str, ...], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert names_meant(typed) == meant
+    assert run(["from-urdf", typed]) == 2
+    hint = f"a robot by name? {meant[0]}" if meant else "ikgen robots lists names"
+    assert hint in capsys.readouterr().err
+    with pytest.raises(ikgen.ArgumentError) as caught:
+        ikgen.load(typed)
+    assert not meant or hint in caught.value.hint

@@ -6,6 +6,7 @@ when they are imported. Nothing but the standard library is imported here.
 
 from __future__ import annotations
 
+import difflib
 import importlib
 import importlib.util
 import os
@@ -21,7 +22,15 @@ from ikgen.errors import BadDescriptionError, MissingToolError, UnknownNameError
 from ikgen.importers.packages import AMENT, sourced
 from ikgen.importers.robot_table import RENAMED
 
-__all__ = ["SOURCES", "NamedRobot", "find_robot", "is_lost", "is_named", "robot_names"]
+__all__ = [
+    "SOURCES",
+    "NamedRobot",
+    "find_robot",
+    "is_lost",
+    "is_named",
+    "names_meant",
+    "robot_names",
+]
 
 DATA, DESCRIPTIONS = "example-robot-data", "robot_descriptions"
 SOURCES = {
@@ -29,6 +38,10 @@ SOURCES = {
     DESCRIPTIONS: "pip install robot_descriptions",
 }
 """The packages, each with how to get it."""
+
+
+_ALIKE = 0.8
+"""From which ratio of `difflib` on a package's name is one misspelt."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,6 +76,21 @@ def find_robot(robot: str | os.PathLike[str]) -> NamedRobot:
     name that it lacks."""
     source, _, name = os.fspath(robot).partition(":")
     return _of_descriptions(name) if source == DESCRIPTIONS else _of_data(name)
+
+
+def names_meant(robot: str | os.PathLike[str]) -> tuple[str, ...]:
+    """What may be meant by a text that is no robot's name and no file's: the package's name spelled as it
+    is, or robots of that name in the packages that are installed."""
+    source, colon, name = os.fspath(robot).partition(":")
+    if colon:
+        close = difflib.get_close_matches(source.lower(), SOURCES, 1, _ALIKE)
+        return tuple(f"{package}:{name}" for package in close)
+    plain, found = source.lower().replace("-", "_"), []
+    for package in SOURCES:
+        with suppress(MissingToolError):
+            names = robot_names(package)
+            found += [f"{package}:{one}" for one in names if one in (plain, f"{plain}_description")]
+    return tuple(found)
 
 
 def robot_names(source: str) -> tuple[str, ...]:
