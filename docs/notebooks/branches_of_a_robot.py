@@ -1,17 +1,21 @@
 # %% [markdown]
 # # Solve a robot and look at its branches
 #
-# Opens as a notebook in Jupyter (with jupytext), VS Code and PyCharm; run it from the repository's
-# folder, after `pip install 'ikgen[notebooks]'`.
+# Opens as a notebook in Jupyter (with jupytext), VS Code and PyCharm; run it anywhere in
+# the repository, after `pip install 'ikgen[notebooks]'`.
 
 # %%
+from pathlib import Path
+
 import matplotlib.pyplot as plt
 import numpy as np
 
 import ikgen
 from ikgen.report.skeleton_bones import skeleton
 
-arm = ikgen.load("urdf_fixtures/kuka_kr6r900sixx.urdf", samples=100)
+here = Path.cwd()
+root = next((up for up in (here, *here.parents) if (up / "urdf_fixtures").is_dir()), here)
+arm = ikgen.load(root / "urdf_fixtures/kuka_kr6r900sixx.urdf", samples=100)
 print(arm)
 
 # %% [markdown]

@@ -2,8 +2,8 @@
 # # From the equations to the code: the Puma 560
 #
 # Step by step, as in Zhang and Hannaford, *IKBT: solving closed-form inverse kinematics with
-# behavior tree*, 2017, with the numbers of its table "Puma 560 Numerical Solutions". Run it from
-# the repository's folder, after `pip install 'ikgen[notebooks]'`.
+# behavior tree*, 2017, with the numbers of its table "Puma 560 Numerical Solutions". Run it
+# anywhere in the repository, after `pip install 'ikgen[notebooks]'`.
 
 # %%
 from pathlib import Path
@@ -16,7 +16,9 @@ from ikgen.derivation.derive import derive
 from ikgen.records.request import Request
 from ikgen.symbolic import equations, prove, solutions
 
-derivation = derive(Request(Path("urdf_fixtures/puma560_paper.toml")))
+here = Path.cwd()
+root = next((up for up in (here, *here.parents) if (up / "urdf_fixtures").is_dir()), here)
+derivation = derive(Request(root / "urdf_fixtures/puma560_paper.toml"))
 print(derivation.geometry.words)
 
 # %% [markdown]

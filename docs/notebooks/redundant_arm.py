@@ -1,17 +1,21 @@
 # %% [markdown]
 # # A redundant arm and its self-motion
 #
-# Seven joints for a pose of six freedoms: one joint is held, and its value is an input. Run it from
-# the repository's folder, after `pip install 'ikgen[notebooks]'`.
+# Seven joints for a pose of six freedoms: one joint is held, and its value is an input. Run it
+# anywhere in the repository, after `pip install 'ikgen[notebooks]'`.
 
 # %%
+from pathlib import Path
+
 import matplotlib.pyplot as plt
 import numpy as np
 
 import ikgen
 from ikgen.report.skeleton_bones import skeleton
 
-arm = ikgen.load("urdf_fixtures/franka_fr3.urdf", samples=100)
+here = Path.cwd()
+root = next((up for up in (here, *here.parents) if (up / "urdf_fixtures").is_dir()), here)
+arm = ikgen.load(root / "urdf_fixtures/franka_fr3.urdf", samples=100)
 print(arm)
 print("held:", arm.free_joints)
 

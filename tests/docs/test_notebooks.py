@@ -26,7 +26,7 @@ def test_notebook_runs(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    monkeypatch.chdir(ROOT)
+    monkeypatch.chdir(path.parent)  # as Jupyter and VS Code do
     monkeypatch.setenv("IKGEN_CACHE_DIR", str(tmp_path))
     plt.switch_backend("agg")
     plt.close("all")
