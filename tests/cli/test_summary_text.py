@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from tests.support.redundant_arms import SHOULDER_ELBOW_WRIST, TORSO, Joint, serial_urdf
+from tests.support.telescopes import RELATIONS, telescope_robot
 
 from ikgen.cli.main import run
 
@@ -98,3 +99,31 @@ def test_no_search_is_proposed_where_other_values_change_nothing(
     )
     line = solutions(tmp_path, capsys, pinned)
     assert "by default" in line and "search" not in line
+
+
+@pytest.mark.parametrize(
+    ("relations", "words"),
+    [
+        (RELATIONS, "stage_2=stage_1*1+0.01; stage_3=stage_1*1+0.02; stage_4=stage_1*0.5+0.03"),
+        ({}, "stage_2=stage_1*1.0+0.01; stage_3=stage_1*1.0+0.02; stage_4=stage_1*1.0+0.03"),
+    ],
+)
+def test_joints_that_follow_others_are_named(
+    relations: dict[str, str], words: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    command = ["from-urdf", str(telescope_robot(tmp_path)), "--task", "position"]
+    command += [f"--couple={joint}={text}" for joint, text in relations.items()]
+    assert run([*command, "--no-verify", "-o", str(tmp_path)]) == 0
+    (line,) = (x for x in capsys.readouterr().out.splitlines() if x.startswith("coupled:"))
+    chosen = "" if relations else " (equal stages of a telescope)"
+    assert line.removeprefix("coupled:").strip() == words + chosen
+    assert run([*command, "--no-verify", "-o", str(tmp_path), "--json"]) == 0
+    assert "; ".join(json.loads(capsys.readouterr().out)["coupled"]) == words
+
+
+def test_an_arm_whose_joints_follow_none_has_no_such_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "arm.urdf").write_text(serial_urdf("arm", SHOULDER_ELBOW_WRIST))
+    assert run(["from-urdf", str(tmp_path / "arm.urdf"), "-o", str(tmp_path), "--no-verify"]) == 0
+    assert "coupled:" not in capsys.readouterr().out

@@ -26,6 +26,7 @@ def summary(generation: Generation) -> str:
         ("task", _task(derivation) + _held(derivation)),
         ("geometry", derivation.geometry.words + _rounding(derivation)),
         ("solved", "; ".join(module.order)),
+        *_coupled(derivation),
         *_motors(dh),
         *_calibration(derivation),
         ("solutions", _solutions(generation)),
@@ -47,6 +48,13 @@ def _robot(derivation: Derivation) -> str:
     words = f"{dh.robot}, {dh.base_link} -> {dh.tip_link}, {counted(dh.dof, 'joint')}"
     others = branches_beside(derivation)
     return f"{words}; other branches end at {listed(others, 5)} (--tip)" if others else words
+
+
+def _coupled(derivation: Derivation) -> list[tuple[str, str]]:
+    """A line on the joints that follow others beyond what the file says, and how."""
+    reading = derivation.reading
+    why = " (equal stages of a telescope)" if reading.coupled else ""
+    return [("coupled", "; ".join(reading.relations) + why)] if reading.relations else []
 
 
 def _motors(dh: DHChain) -> list[tuple[str, str]]:

@@ -29,7 +29,7 @@ def read(request: Request, tree: JointTree | None = None) -> Reading:
     """Read the file, choose the chain and convert it to modified DH form. `tree` is the file's where it was
     read before."""
     _check_held_once(request)
-    reading = _with_motors(_with_parts(_read(request, tree), request), request)
+    reading = _with_motors(_with_relations(_read(request, tree), request), request)
     _check_units(request, reading.dh.held_inputs)
     if len(reading.dh.free_indices) == reading.dh.dof:
         raise UsageError(
@@ -48,13 +48,16 @@ def _check_held_once(request: Request) -> None:
             )
 
 
-def _with_parts(reading: Reading, request: Request) -> Reading:
-    """With the names of joints that joints which follow several have behind them."""
-    if not request.sums:
-        return reading
+def _with_relations(reading: Reading, request: Request) -> Reading:
+    """With the relations between joints, asked for or chosen, and the names of joints that joints which
+    follow several have behind them."""
+    if not request.couple:
+        return replace(reading, relations=reading.coupled)
     from ikgen.chains.several_sources import parts
 
-    return replace(reading, parts=tuple(parts(request.sums).keys() - request.sums.keys()))
+    asked = (f"{joint}={x}" for joint, x in request.couple.items() if joint not in request.motors)
+    behind = tuple(parts(request.sums).keys() - request.sums.keys())
+    return replace(reading, relations=tuple(asked), parts=behind)
 
 
 def _with_motors(reading: Reading, request: Request) -> Reading:

@@ -22,9 +22,10 @@ __all__ = ["Derivation", "Held", "Reading", "Unsolved"]
 @dataclass(frozen=True, slots=True)
 class Reading:
     """A description as read: its tree and chain (none for a DH table) and the chain in DH form. `coupled`
-    are the relations between joints that were chosen, not asked for (`JOINT=SOURCE*k+c`); `parts` are
-    joints of the chain that are not the robot's, each a part of the value of one that follows several;
-    `calibration` is there where the chain is one arm's own."""
+    are the relations between joints that were chosen, not asked for (`JOINT=SOURCE*k+c`), `relations`
+    those asked for or chosen, but of motors; `parts` are joints of the chain that are not the robot's,
+    each a part of the value of one that follows several; `calibration` is there where the chain is one
+    arm's own."""
 
     source: Source
     tree: JointTree | None
@@ -33,6 +34,7 @@ class Reading:
     coupled: tuple[str, ...] = ()
     parts: tuple[str, ...] = ()
     calibration: Calibration | None = None
+    relations: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -46,6 +46,7 @@ def as_dict(generation: Generation) -> dict[str, Any]:
         "joints": [joint.name for joint in dh.joints],
         "free": list(dh.held),
         "locked": dict(dh.locked),
+        "coupled": list(derivation.reading.relations),
         "chosen": _chosen(derivation),
         "symbols": list(dh.symbols),
         "geometry": {"name": derivation.geometry.name, "words": derivation.geometry.words},
