@@ -335,6 +335,9 @@ def test_degrees_and_millimetres_are_told(tmp_path: Path) -> None:
     path.write_text(f'convention = "modified"\n{table}')
     found = [str(one) for one in read_dh_table(path)[0].warnings]
     assert any("joint 2: alpha = -90 looks like degrees: taken as rad" in one for one in found)
-    assert any("lengths up to 431.8 m look like mm: kept as they are" in one for one in found)
+    assert any("lengths up to 431.8 m look like mm or cm: kept as they are" in one for one in found)
+    path.write_text(f'convention = "modified"\n{table}'.replace("431.8", "43.18"))
+    found = [str(one) for one in read_dh_table(path)[0].warnings]
+    assert any("lengths up to 43.18 m look like mm or cm" in one for one in found)
     path.write_text(f'convention = "modified"\n{table}'.replace("431.8", "0.4").replace("-90", "1"))
     assert not any("look" in str(one) for one in read_dh_table(path)[0].warnings)

@@ -261,7 +261,7 @@ BENT = {
             joint('<origin xyz="0 0 -450"/>' + LIMIT, name="k", parent="b", child="c"),
             links="abc",
         ),
-        "joints lie up to 450 m apart: lengths look like mm: kept as they are",
+        "joints lie up to 450 m apart: lengths look like mm or cm: kept as they are",
     ),
     "axis": (robot(joint('<axis xyz="1 0 0.5"/>' + LIMIT)), "axis of length 1.11803 normalised"),
     "twice": (
@@ -316,6 +316,20 @@ def test_joints_that_alone_look_like_millimetres_are_named(read, text, names):
     assert [warning.partition("'")[2].partition("'")[0] for warning in warnings] == names
     assert all(warning.partition("bot.urdf:")[2][0].isdigit() for warning in warnings)
     assert all("looks like mm, others' like m: kept as it is" in warning for warning in warnings)
+
+
+@pytest.mark.parametrize(
+    ("lengths", "told"),
+    [
+        ((10, 12.5, 12, 6.5), True),  # cm
+        ((0.2, 0.3, 0.2, 0.3, 0.2, 0.3, 0.1), False),
+        ((18, 8, 7, 1), False),  # a crane
+    ],
+)
+def test_links_that_add_up_to_more_than_an_arm_are_told(read, lengths, told):
+    warnings = read(metres(*lengths)).source.warnings
+    found = [one for one in warnings if "lengths look like mm or cm" in one]
+    assert bool(found) == told
 
 
 def test_where_a_robot_stands_is_no_length_of_it(read):

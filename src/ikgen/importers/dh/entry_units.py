@@ -1,4 +1,4 @@
-"""Entries of a DH table that look like degrees or mm."""
+"""Entries of a DH table that look like degrees, mm or cm."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from collections.abc import Sequence
 from ikgen.importers.dh.table_document import TableDocument
 from ikgen.importers.dh.table_entries import Entry
 from ikgen.importers.urdf.joint_limits import DEGREES_ABOVE
-from ikgen.importers.urdf.millimetres import FARTHEST_JOINT
+from ikgen.importers.urdf.millimetres import longer_than_arms
 
 __all__ = ["note_units"]
 
 
 def note_units(document: TableDocument, entries: Sequence[Entry]) -> None:
-    """Warns of angles beyond two turns, and of several lengths beyond those of any robot. They are kept as
+    """Warns of angles beyond two turns, and of lengths that those of no arm add up to. They are kept as
     they are."""
     for i, entry in enumerate(entries, start=1):
         for key in ("alpha", "theta"):
@@ -21,7 +21,7 @@ def note_units(document: TableDocument, entries: Sequence[Entry]) -> None:
             if not angle.symbolic and abs(angle.value) > DEGREES_ABOVE:
                 words = f"joint {i}: {key} = {angle.value:g} looks like degrees"
                 document.warn(f"{words}: taken as rad, in which 90 degrees are 'pi/2'")
-    lengths = [x for entry in entries for x in (entry.a, entry.d) if not x.symbolic]
-    far = [abs(x.value) for x in lengths if abs(x.value) > FARTHEST_JOINT]
-    if len(far) > 1:
-        document.warn(f"lengths up to {max(far):g} m look like mm: kept as they are")
+    given = [x for entry in entries for x in (entry.a, entry.d) if not x.symbolic]
+    lengths = [abs(x.value) for x in given]
+    if longer_than_arms(lengths):
+        document.warn(f"lengths up to {max(lengths):g} m look like mm or cm: kept as they are")

@@ -1,16 +1,19 @@
-"""Lengths of a description that look like mm: all of them, or those of a few joints."""
+"""Lengths of a description that look like mm or cm: all of them, or those of a few joints."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from ikgen.importers.xml_document import Place
 from ikgen.model.joint_tree import Joint
 
-__all__ = ["FARTHEST_JOINT", "note_millimetres"]
+__all__ = ["longer_than_arms", "note_millimetres"]
 
-FARTHEST_JOINT = 20.0
-"""Most (m) from a moving joint to the one before, along an axis: longer than the booms of robots."""
+_FARTHEST = 20.0
+"""Most (m) from a moving joint to the one before, along an axis: longer than the booms of robots. No arm's
+links but the longest, a mast or a rail, add up to more."""
 
 _TIMES = 30.0
 """So many times as far as all others no joint of a robot lies: a mast, say, that carries a small arm."""
@@ -21,19 +24,47 @@ def note_millimetres(joints: Sequence[Joint], place: Place) -> None:
     not, else of all at once where they are several. They are kept as they are."""
     moving = [joint for joint in joints if joint.type.moves_on_one_axis]
     lengths = {joint.name: _length(joint) for joint in _carried(moving, joints)}
-    near = [length for length in lengths.values() if 0.0 < length <= FARTHEST_JOINT]
-    far = {name: length for name, length in lengths.items() if length > FARTHEST_JOINT}
+    near = [length for length in lengths.values() if 0.0 < length <= _FARTHEST]
+    far = {name: length for name, length in lengths.items() if length > _FARTHEST}
     if len(far) < len(near) and min(far.values(), default=0.0) > _TIMES * max(near):
         lines = {joint.name: joint.line for joint in joints}
         for name, length in far.items():
             text = f"joint '{name}': its origin {length:g} m away looks like mm, others' like m"
             place.warn_at(lines[name], f"{text}: kept as it is")
         return
-    apart = [abs(float(x)) for joint in moving for x in joint.T_parent_child[:3, 3]]
-    apart = [x for x in apart if x > FARTHEST_JOINT]
-    if len(apart) > 1:
-        text = f"joints lie up to {max(apart):g} m apart: lengths look like mm: kept as they are"
+    if _longer_than_arms(joints):
+        longest = max(map(_length, moving))
+        text = f"joints lie up to {longest:g} m apart: lengths look like mm or cm: kept as they are"
         place.warn(None, text)
+
+
+def longer_than_arms(lengths: Sequence[float]) -> bool:
+    """Whether links of these lengths (m) in a row are longer than those of any arm."""
+    return sum(lengths) - max(lengths, default=0.0) > _FARTHEST
+
+
+def _longer_than_arms(joints: Sequence[Joint]) -> bool:
+    """Whether the coordinates of the origins of joints that move, from a root to some link, are."""
+    below = _by_parent(joints)
+    children = {joint.child for joint in joints}
+    waiting = [(link, 0.0, 0.0) for link in below if link not in children]
+    while waiting:
+        link, total, longest = waiting.pop()
+        for joint in below.pop(link, []):
+            apart = np.abs(joint.T_parent_child[:3, 3]) * joint.type.moves_on_one_axis
+            so_far, most = total + float(apart.sum()), max(longest, float(apart.max()))
+            if so_far - most > _FARTHEST:
+                return True
+            waiting.append((joint.child, so_far, most))
+    return False
+
+
+def _by_parent(joints: Sequence[Joint]) -> dict[str, list[Joint]]:
+    """Link -> the joints that it carries."""
+    below: dict[str, list[Joint]] = {}
+    for joint in joints:
+        below.setdefault(joint.parent, []).append(joint)
+    return below
 
 
 def _length(joint: Joint) -> float:
@@ -43,9 +74,7 @@ def _length(joint: Joint) -> float:
 
 def _carried(moving: Sequence[Joint], joints: Sequence[Joint]) -> Sequence[Joint]:
     """The joints that move and those that they carry: what is fixed before stands anywhere in the world."""
-    below: dict[str, list[Joint]] = {}
-    for joint in joints:
-        below.setdefault(joint.parent, []).append(joint)
+    below = _by_parent(joints)
     found = {joint.name for joint in moving}
     waiting = list(moving)
     while waiting:
