@@ -184,3 +184,26 @@ def test_a_table_takes_offsets_only(tmp_path: Path) -> None:
     table = Request(FIXTURES / "scara_standard.toml")
     with pytest.raises(UsageError, match="offsets of its rows"):
         read(calibrated(OWN, tmp_path, table))
+
+
+@pytest.mark.parametrize(
+    ("was", "now", "said"),
+    [
+        ("-0.42487", "-424.87", "joint 'elbow_joint': its origin 424.87 m away looks like mm"),
+        ("roll: 1.57138", "roll: 90", "rpy 90 0 -3.4e-05 looks like degrees"),
+    ],
+)
+def test_units_that_look_wrong_are_told_of_its_own_file(
+    was: str, now: str, said: str, tmp_path: Path
+) -> None:
+    known = read(UR5E).source.warnings
+    found = read(calibrated(OWN.replace(was, now), tmp_path)).source.warnings
+    new = [one for one in found if one not in known]
+    assert any(said in one for one in new)
+    assert all(one.startswith(f"{tmp_path / 'own.yaml'}: ") for one in new)
+
+
+def test_what_cannot_be_is_told_of_its_own_file(tmp_path: Path) -> None:
+    with pytest.raises(BadDescriptionError) as caught:
+        read(calibrated(OWN.replace("0.13342", "133420"), tmp_path))
+    assert caught.value.file == str(tmp_path / "own.yaml")

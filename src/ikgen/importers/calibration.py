@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import math
+import re
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from pathlib import Path
@@ -17,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 from ikgen.errors import BadDescriptionError, shown
 from ikgen.importers.merge_conflict import conflict_or
 from ikgen.importers.toml_text import parse_toml
+from ikgen.model.oddity import Oddity
 
 if TYPE_CHECKING:
     from ikgen.model.joint_tree import JointTree, Source
@@ -53,7 +55,6 @@ def calibrated_tree(tree: JointTree, path: Path) -> JointTree:
 
     from lxml import etree
 
-    from ikgen.importers.urdf.urdf_tree import changed_tree
     from ikgen.importers.xml_document import children, parse_xml, shown_file
 
     source = tree.source
@@ -67,8 +68,28 @@ def calibrated_tree(tree: JointTree, path: Path) -> JointTree:
             element.remove(old)
         numbers = [f"{origin[name]!r}" for name in _ORIGIN]
         etree.SubElement(element, "origin", xyz=" ".join(numbers[:3]), rpy=" ".join(numbers[3:]))
-    made = changed_tree(source, root)
+    made = _changed_tree(source, root, path)
     return replace(made, source=calibrated_source(made.source, path))
+
+
+def _changed_tree(source: Source, root: Any, path: Path) -> JointTree:
+    """The tree with the calibration's origins; what is odd or wrong in it and was not before is told of the
+    calibration's file."""
+    from dataclasses import replace
+
+    from ikgen.importers.urdf.urdf_tree import changed_tree
+    from ikgen.importers.xml_document import shown_file
+
+    try:
+        made = changed_tree(source, root)
+    except BadDescriptionError as error:
+        raise BadDescriptionError(error.problem, file=str(path), hint=error.hint) from None
+    place = re.compile(rf"{re.escape(shown_file(source))}(:\d+)?(?=: )")
+    found = []
+    for one in made.source.warnings:
+        new = Oddity(place.sub(lambda _: str(path), one, count=1), one.joint, one.kind)
+        found.append(one if one in source.warnings else new)
+    return replace(made, source=replace(made.source, warnings=tuple(found)))
 
 
 def _carrier(tree: JointTree, key: str, path: Path) -> str:
