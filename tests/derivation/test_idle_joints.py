@@ -42,7 +42,7 @@ def arm(folder: Path, joints: tuple[Joint, ...], **limits: tuple[float, float]) 
 
 
 @pytest.mark.parametrize("name", ["shoulder_pitch", "shoulder_roll", "wrist_pitch"])
-@pytest.mark.parametrize("limits", [(0.5, 0.5), (0.2, 0.209)])
+@pytest.mark.parametrize("limits", [(0.5, 0.5001), (0.2, 0.209)])
 def test_a_joint_that_hardly_moves_is_held_first(
     name: str, limits: tuple[float, float], tmp_path: Path
 ) -> None:
@@ -82,12 +82,12 @@ def test_slides_count_by_the_arm_s_length(tmp_path: Path) -> None:
 
 def test_it_is_held_where_rules_would_solve_another_choice(tmp_path: Path) -> None:
     """With the quill held three parallel axes are left; with the lift a slide beside them."""
-    found = derive(arm(tmp_path, LIFT_SCARA, lift=(0.3, 0.3)))
+    found = derive(arm(tmp_path, LIFT_SCARA, lift=(0.3, 0.3001)))
     assert found.held is not None and found.held.joints == ("lift",)
 
 
 def test_an_elimination_that_holds_it_comes_before_others(tmp_path: Path) -> None:
-    found = derive(arm(tmp_path, NON_SPHERICAL_WRIST, base_yaw=(0.5, 0.5)))
+    found = derive(arm(tmp_path, NON_SPHERICAL_WRIST, base_yaw=(0.5, 0.5001)))
     assert found.held is not None and found.held.joints == ("base_yaw",)
     assert found.held.why == "the general 6R elimination"
 
@@ -106,32 +106,59 @@ def test_an_elbow_that_hardly_moves_is_named(tmp_path: Path) -> None:
 SIX = tuple(one for one in SHOULDER_ELBOW_WRIST if one[0] != "shoulder_roll")
 
 
-def test_six_joints_of_which_one_is_pinned_are_told(
+def test_six_joints_of_which_one_hardly_moves_are_told(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    request = arm(tmp_path, SIX, shoulder_pitch=(0.5, 0.5))
+    request = arm(tmp_path, SIX, shoulder_pitch=(0.4, 0.4002))
     command = ["from-urdf", str(request.robot), "-o", str(tmp_path), "--samples", "20"]
     assert run([*command, "--json"]) == 0
-    said = json.loads(capsys.readouterr().out)["warnings"]
-    assert "'shoulder_pitch': lower = upper = 0.5" in said[0]
-    assert said[0].endswith("; --lock shoulder_pitch=0.5 makes it a constant")
-    assert said[1].startswith("'shoulder_pitch' hardly moves, so only 5 joints move: ")
+    (said,) = json.loads(capsys.readouterr().out)["warnings"]
+    assert said.startswith("'shoulder_pitch' hardly moves, so only 5 joints move: ")
     assert run(command) == 0
     (line,) = (x for x in capsys.readouterr().out.splitlines() if x.startswith("task:"))
     assert line.endswith(
-        "; shoulder_pitch hardly moves: answers only poses with its value (--lock shoulder_pitch=0.5)"
+        "; shoulder_pitch hardly moves: answers only poses with its value (--lock shoulder_pitch=0.4)"
     )
-    assert said[1] in inspect_robot(request).warnings
-    told = ikgen.load(request.robot, verify=False, cache=False).warnings
-    assert list(told) == [argument_words(one) for one in said]
-    assert 'lock={"shoulder_pitch": 0.5}' in told[0] and "--" not in " ".join(told)
+    assert said in inspect_robot(request).warnings
+    (told,) = ikgen.load(request.robot, verify=False, cache=False).warnings
+    assert told == argument_words(said) and 'lock={"shoulder_pitch": 0.4}' in told
 
 
-def test_the_way_out_that_is_named_does_and_silences_the_warning(tmp_path: Path) -> None:
-    request = arm(tmp_path, SIX, shoulder_pitch=(0.5, 0.5))
-    locked = dataclasses.replace(request, lock={"shoulder_pitch": 0.5})
-    assert read(request).source.warnings and not read(locked).source.warnings
-    assert not any("hardly" in one for one in inspect_robot(locked).warnings)
+@pytest.mark.parametrize("joints", [SIX, SHOULDER_ELBOW_WRIST])
+def test_a_joint_that_cannot_move_is_a_constant(
+    joints: tuple[Joint, ...], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    request = arm(tmp_path, joints, shoulder_pitch=(0.5, 0.5))
+    command = ["from-urdf", str(request.robot), "-o", str(tmp_path), "--samples", "20", "--json"]
+    assert run(command) == 0
+    made = json.loads(capsys.readouterr().out)
+    assert made["locked"] == {"shoulder_pitch": 0.5} and "shoulder_pitch" not in made["joints"]
+    assert len(made["joints"]) == len(joints) - 1 and not made["free"]
+    said = "'shoulder_pitch': lower = upper = 0.5: it cannot move, so it is locked there"
+    assert sum(said in one for one in made["warnings"]) == 1
+    assert run(["verify", str(tmp_path), "--samples", "20", "-q"]) == 0
+    same = dataclasses.replace(request, lock={"shoulder_pitch": 0.5})
+    assert read(same).dh.rows == read(request).dh.rows and not read(same).source.warnings
+
+
+def test_it_is_a_joint_where_it_is_held_or_coupled(tmp_path: Path) -> None:
+    request = arm(tmp_path, SHOULDER_ELBOW_WRIST, shoulder_roll=(0.5, 0.5))
+    held = read(dataclasses.replace(request, free={"shoulder_roll": None}))
+    assert held.dh.free == ("shoulder_roll",) and not held.dh.locked
+    own = read(dataclasses.replace(request, couple={"elbow": "elbow*1+shoulder_roll*0.5"}))
+    assert not own.dh.locked
+
+
+def test_one_of_a_table_is_a_constant_too(tmp_path: Path) -> None:
+    path = tmp_path / "arm.toml"
+    row = '[[joints]]\nname = "q{}"\ntype = "revolute"\nalpha = {}\na = {}\nd = 0\ntheta = 0\n'
+    rows = [row.format(1, 0, 0), row.format(2, '"pi/2"', 0.3), row.format(3, 0, 0.4)]
+    rows[1] += "limits = [0.2, 0.2]\n"
+    path.write_text(f'name = "arm"\nconvention = "modified"\n{"".join(rows)}')
+    found = read(Request(path))
+    assert found.dh.locked == (("q2", 0.2),) and found.dh.dof == 2
+    assert any("limits 0.2 to 0.2: it cannot move" in one for one in found.source.warnings)
+    assert read(Request(path, free={"q2": None})).dh.dof == 3
 
 
 @pytest.mark.parametrize(

@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from ikgen.derivation.joint_value import JointValue
+from ikgen.derivation.pinned_joints import pinned_in_chain, with_pinned
 from ikgen.emit.derivation import Reading
 from ikgen.errors import BadDescriptionError, UsageError
 from ikgen.model.chain import PRISMATIC
@@ -49,8 +50,7 @@ def _check_held_once(request: Request) -> None:
 
 
 def _with_relations(reading: Reading, request: Request) -> Reading:
-    """With the relations between joints, asked for or chosen, and the names of joints that joints which
-    follow several have behind them."""
+    """With the relations between joints, and the names of joints that those of several sources need."""
     if not request.couple:
         return replace(reading, relations=reading.coupled)
     from ikgen.chains.several_sources import parts
@@ -108,8 +108,9 @@ def _read(request: Request, tree: JointTree | None) -> Reading:
     tree = _with_left_out(tree or read_tree(request), request)
     _check_units(request, tree.joints)
     _check_locks(request, tree.joints)
+    asked, request = request, pinned_in_chain(request, tree)
     tree, chain, coupled = _coupled_chain(request, tree)
-    tree = _of_chain(tree, chain, request)
+    tree = _of_chain(tree, chain, asked)
     reading = Reading(tree.source, tree, chain, to_dh(chain, free=free), coupled)
     if request.calibration is None or is_offsets(request.calibration):
         return _with_offsets(reading, request)
@@ -237,6 +238,9 @@ def _read_table(request: Request, free: tuple[str, ...]) -> Reading:
         what = f"{given}: a DH table is one chain without arguments"
         raise UsageError(f"{request.robot}: {what}", hint=f"leave {given} out")
     source, dh = read_dh_table(request.robot, free=free, locked=request.lock)
+    pinned = with_pinned(request, dh.joints)
+    if pinned is not request:
+        return _read_table(pinned, free)
     joints = read_dh_table(request.robot)[1].joints if request.lock else dh.joints
     followed = {joint: one.joint for joint, one in request.relations.items()}
     dh = parted_dh(dh, request.sums, followed)

@@ -8,7 +8,7 @@ from typing import Any
 
 from ikgen.importers.dh.entry_expression import BadEntryError, evaluate
 from ikgen.importers.dh.table_document import TableDocument
-from ikgen.importers.urdf.joint_limits import FARTHEST, UNLIMITED, turning_limits
+from ikgen.importers.urdf.joint_limits import FARTHEST, PINNED, UNLIMITED, turning_limits
 from ikgen.model.joint_tree import Limits
 
 __all__ = ["read_limits"]
@@ -50,6 +50,8 @@ def read_limits(
     if values[0] > FARTHEST or values[1] < -FARTHEST:
         message = f"limits {values[0]:g} to {values[1]:g} hold no value that can be told apart"
         raise document.error(message, _HINT, joint=i, key="limits")
+    if values[0] == values[1]:
+        document.warn(f"joint {i}: limits {values[0]:g} to {values[1]:g}: {PINNED}")
     if joint["type"] != "revolute":
         return Limits(values[0], values[1])
     limits, odd = turning_limits(values[0], values[1])

@@ -8,7 +8,7 @@ from ikgen.importers.urdf.attribute_values import BadValueError
 from ikgen.model.joint_tree import JointType, Limits
 from ikgen.model.oddity import Oddity, OddityKind
 
-__all__ = ["DEGREES_ABOVE", "FARTHEST", "UNLIMITED", "joint_limits", "turning_limits"]
+__all__ = ["DEGREES_ABOVE", "FARTHEST", "PINNED", "UNLIMITED", "joint_limits", "turning_limits"]
 
 UNLIMITED = Limits(-math.inf, math.inf)
 
@@ -23,6 +23,9 @@ _ROUND = 0.5
 
 _NO_LIMIT_FROM = 1e3
 """A range (rad) that stands for none: files write 999999, and 159 turns reach every angle."""
+
+PINNED = "it cannot move, so it is locked there unless it is held (--free) or coupled"
+"""What becomes of a joint whose limits leave one value."""
 
 _TURN = 2.0 * math.pi
 FARTHEST = 1e6
@@ -61,9 +64,7 @@ def joint_limits(
             "write limits in rad or m",
         )
     if low == high:
-        option = f"--lock {name}={Limits(low, high).middle_text}"
-        text = f"lower = upper = {low:g}: the joint cannot move; {option} makes it a constant"
-        notes.append(Oddity(text, name, OddityKind.LOCKABLE))
+        notes.append(Oddity(f"lower = upper = {low:g}: {PINNED}", name, OddityKind.LOCKABLE))
     if type_ is JointType.PRISMATIC:
         return Limits(low, high), tuple(notes)
     limits, odd = turning_limits(low, high)
