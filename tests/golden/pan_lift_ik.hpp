@@ -1280,6 +1280,27 @@ template <class Arm> struct SingularValue {
     return !above(at.slope, bound);
   }
 
+  static bool redundant_below(const double* q, double bound) noexcept {
+    if constexpr (Arm::kRank >= kRank) {
+      return below(q, bound);
+    } else if constexpr (Arm::kWholePose || Arm::kRank < kEquations - Arm::Columns::kRelations) {
+      const PoseError<Arm> at(q, HeldAim<Arm>::own(q));
+      Lanes<1> V[kEquations][kMoving], A[kRank][kRank];
+      for (int e = 0; e < kEquations; ++e)
+        for (int k = 0; k < kMoving; ++k) V[e][k] = spread<1>(at.slope[e][kJoints[k]]);
+      take_products(V, A);
+      return eigenvalue<kRank - Arm::kRank>(A).v < bound * bound;
+    } else {
+      double slope[kEquations][Arm::kDof], A[kEquations][kEquations];
+      const Frame T = of_all_joints(q, slope);
+      take_products(slope, A);
+      shift_diagonal(-bound * bound, A);
+      Arm::Task::fill(T, 1.0, A);
+      factor(A);
+      return !definite(A);
+    }
+  }
+
   static bool between(const double* a, const double* b) noexcept {
     if (Arm::kFree > 0) return false;
     double here[kEquations][Arm::kDof], there[kEquations][Arm::kDof], M[Arm::kDof][Arm::kDof] = {};
@@ -3273,12 +3294,37 @@ template <class Arm, template <class> class Way> struct Projection {
   }
 };
 
+// --- shortest motion -----------------------------------------------------------------------------
+template <class Arm> struct ShortestMotion {
+  static constexpr int kDof = Arm::kDof;
+  static constexpr double kDamping = 1e-8;  // where Newton steps arrive
+
+  static double move(double* at, const Eigen::Isometry3d& pose, const bool* stopped, double damping) noexcept {
+    PoseError<AllMoving<Arm>> here(at, HeldAim<AllMoving<Arm>>(pose));
+    constexpr int n = PoseError<AllMoving<Arm>>::kCount;
+    const double worst = here.largest();
+    double N[n][n];
+    here.hold(stopped);
+    gram_of_rows(here.slope, N);
+    shift_diagonal(damping, N);
+    factor(N);
+    substitute(N, here.error);
+    for (int j = 0; j < kDof; ++j) {
+      double step = 0.0;
+      for (int a = 0; a < n; ++a) step += here.slope[a][j] * here.error[a];
+      at[j] += std::min(std::max(step, -1.0), 1.0);
+    }
+    return worst;
+  }
+};
+
 // --- path following ------------------------------------------------------------------------------
 template <class Arm, class Solver> struct PathStep {
   static constexpr int kDof = Arm::kDof, kDeepest = 24, kShallow = 9;
   static constexpr int kMost = 1000;  // steps to a pose, where rows follow at no length
   static constexpr double kFarthest = 0.3, kAway = 1.0, kOff = 0.2, kLeastOff = 1e-4, kJump = 0.05;
-  static constexpr double kDamping = 1e-8, kLeastDamping = 1e-14;  // where Newton steps arrive, and where they foretell
+  static constexpr double kLeastDamping = 1e-14;  // where steps foretell the next row
+  using Shortest = ShortestMotion<Arm>;
   using Status = typename Arm::Status;
 
   double q[kDof];
@@ -3297,14 +3343,11 @@ template <class Arm, class Solver> struct PathStep {
     std::copy_n(here, kDof, expected);
     bool singular = false;
     Status why = next_row(pose, expected, row, singular);
-    if (Arm::kFree > 0 && status == Status::Unreachable && why == Status::Unreachable) {
-      why = search(pose, last, limits, row, singular);
-      if (why == Status::Ok) status = Status::Singular;
-    }
-    if (why == Status::Ok && farthest(row, here) < kFarthest && arrive(row) == Status::Ok) {
-      crossed = true;
-      at_singularity = singular;
-      return Status::Ok;
+    if (why == Status::Ok && beside(row, singular, pose)) return Status::Ok;
+    if (Arm::kFree > 0 && status != Status::Ok) {
+      const Status found = search(pose, last, limits, row, singular);
+      if (found == Status::Ok && beside(row, singular, pose)) return Status::Ok;
+      if (status == Status::Unreachable && why == Status::Unreachable && found == Status::Ok) why = status = Status::Singular;
     }
     std::copy_n(there, kDof, q);
     return status == Status::Singular && why != Status::Ok ? why : status;
@@ -3316,7 +3359,7 @@ template <class Arm, class Solver> struct PathStep {
     bool singular = false;
     const bool none[kDof] = {};
     std::copy_n(q, kDof, expected);
-    move(expected, pose, none, kLeastDamping);
+    Shortest::move(expected, pose, none, kLeastDamping);
     Status status = next_row(pose, expected, row, singular);
     if (status == Status::Ok) {
       const double gap = farthest(row, expected), moved = farthest(row, q);
@@ -3326,7 +3369,7 @@ template <class Arm, class Solver> struct PathStep {
       if (follows || (depth == kDeepest && moved < kJump)) {
         crossed = crossed || singular || across || !follows;
         at_singularity = singular;
-        return arrive(row);
+        return arrive(row, pose);
       }
       status = Status::Singular;
     } else if (depth >= kShallow) {
@@ -3364,55 +3407,74 @@ template <class Arm, class Solver> struct PathStep {
     return most;
   }
 
-  Status arrive(const double* row) noexcept {
-    for (int j = 0; j < kDof && limits; ++j)
-      if (!(row[j] >= Arm::kLower.data()[j] - Arm::Policy::kLimitTolerance && row[j] <= Arm::kUpper.data()[j] + Arm::Policy::kLimitTolerance))
-        return Status::Limits;
-    for (int j = 0; j < kDof; ++j)
-      q[j] = limits ? std::min(std::max(row[j], Arm::kLower.data()[j]), Arm::kUpper.data()[j]) : row[j];
+  bool beside(const double* row, bool singular, const Eigen::Isometry3d& pose) noexcept {
+    if (!(farthest(row, q) < kFarthest) || arrive(row, pose) != Status::Ok) return false;
+    crossed = true;
+    at_singularity = singular;
+    return true;
+  }
+
+  Status arrive(const double* row, const Eigen::Isometry3d& pose) noexcept {
+    double placed[kDof];
+    std::copy_n(row, kDof, placed);
+    double off = limits ? outside(row) : 0.0;
+    if (off > Arm::Policy::kLimitTolerance && off <= Arm::Policy::kLimitReach) {
+      const typename Arm::Solutions inside = rows_of(pose, row, true);
+      for (int k = inside.count - 1; k >= 0; --k) {
+        const double* one = inside.q.data()[k].data();
+        if (!(farthest(one, row) < kLeastOff)) continue;
+        std::copy_n(one, kDof, placed);
+        off = 0.0;
+      }
+    }
+    if (off > Arm::Policy::kLimitTolerance) return Status::Limits;
+    for (int j = 0; j < kDof; ++j) q[j] = limits ? clipped(placed, j) : placed[j];
     return Status::Ok;
   }
 
-  static double move(double* at, const Eigen::Isometry3d& pose, const bool* stopped, double damping) noexcept {
-    PoseError<AllMoving<Arm>> here(at, HeldAim<AllMoving<Arm>>(pose));
-    constexpr int n = PoseError<AllMoving<Arm>>::kCount;
-    const double worst = here.largest();
-    double N[n][n];
-    here.hold(stopped);
-    gram_of_rows(here.slope, N);
-    shift_diagonal(damping, N);
-    factor(N);
-    substitute(N, here.error);
-    for (int j = 0; j < kDof; ++j) {
-      double step = 0.0;
-      for (int a = 0; a < n; ++a) step += here.slope[a][j] * here.error[a];
-      at[j] += std::min(std::max(step, -1.0), 1.0);
-    }
-    return worst;
+  static double outside(const double* row) noexcept {
+    double most = -kInfinity;
+    for (int j = 0; j < kDof; ++j)
+      most = std::max(most, std::max(Arm::kLower.data()[j] - row[j], row[j] - Arm::kUpper.data()[j]));
+    return most;
   }
 
   Status next_row(const Eigen::Isometry3d& pose, double* expected, double* row, bool& singular) const noexcept {
     return closed_form(pose, q, expected, row, singular);
   }
 
-  static Status closed_form(const Eigen::Isometry3d& pose, const double* nearby, const double* expected, double* row,
-                            bool& singular) noexcept {
-    typename Arm::Options options;
-    typename Arm::Joints seed;
-    std::copy_n(nearby, kDof, seed.data());
-    options.seed = &seed;
-    options.limits = false;
-    typename Arm::Solutions found;
-    Solver::solve(pose, options, found);
+  Status closed_form(const Eigen::Isometry3d& pose, const double* nearby, const double* expected, double* row,
+                     bool& singular) const noexcept {
+    typename Arm::Solutions found = rows_of(pose, nearby, false);
+    const auto inside = [&](int k) noexcept { return !(outside(found.q.data()[k].data()) > Arm::Policy::kLimitReach); };
+    int some = 0;
+    for (int k = 0; k < found.count; ++k) some += inside(k);
+    const bool left_out = limits && some > 0 && some < found.count &&
+                          SingularValue<AllMoving<Arm>>::redundant_below(q, Arm::Policy::kSingularBelow);
     double least = kInfinity;
     for (int k = 0; k < found.count; ++k) {
       const double gap = farthest(found.q.data()[k].data(), expected);
-      if (!(gap < least)) continue;
+      if (!(gap < least) || (left_out && !inside(k))) continue;
       least = gap;
       std::copy_n(found.q.data()[k].data(), kDof, row);
       singular = found.singular.data()[k];
     }
     return found.status;
+  }
+
+  static typename Arm::Solutions rows_of(const Eigen::Isometry3d& pose, const double* nearby, bool limits) noexcept {
+    typename Arm::Options options;
+    typename Arm::Joints seed;
+    std::copy_n(nearby, kDof, seed.data());
+    options.seed = &seed;
+    options.limits = limits;
+    typename Arm::Solutions found;
+    Solver::solve(pose, options, found);
+    return found;
+  }
+
+  static double clipped(const double* row, int j) noexcept {
+    return std::min(std::max(row[j], Arm::kLower.data()[j]), Arm::kUpper.data()[j]);
   }
 
   static Eigen::Isometry3d between(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) noexcept {

@@ -3455,6 +3455,30 @@ def _search_held(
     return Solutions(q[0, order], found.status, found.singular[order], names=found.names)
 
 
+# The pose halfway from one to another.
+
+
+def _pose_between(a: Array, b: Array) -> Array:
+    """The pose halfway (4, 4)."""
+    T = 0.5 * (a + b)
+    R = a[:3, :3].T @ b[:3, :3]
+    w = np.array([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]])
+    sine, cosine = 0.5 * float(np.linalg.norm(w)), 0.5 * (float(np.trace(R)) - 1.0)
+    angle = float(np.arctan2(sine, cosine))
+    if sine > 1e-6:
+        axis = w / (2.0 * sine)
+    elif cosine > 0.0:
+        return np.asarray(np.where(np.arange(4) == 3, T, a))
+    else:
+        S = R + np.eye(3)
+        column = S[:, int(np.argmax(np.diag(S)))]
+        axis = column / np.linalg.norm(column)
+    K = np.cross(np.eye(3), axis)
+    half = 0.5 * angle
+    T[:3, :3] = a[:3, :3] @ (np.eye(3) + np.sin(half) * K + (1.0 - np.cos(half)) * K @ K)
+    return T
+
+
 # Joint values along a path of poses, on one branch.
 
 
@@ -3540,14 +3564,19 @@ class _Walk:
             return status
         there, self.q = self.q, here
         rows, flags, why, _ = self._rows(pose)
-        moved = np.abs(rows - here).max(axis=1)
-        near = len(rows) and moved.min() < _path_following_FARTHEST
-        k = int(moved.argmin()) if near else 0
-        if near and self._arrive(rows[k]) is Status.OK:
-            self.crossed, self.singular = True, bool(flags[k])
+        if self._beside(rows, flags, pose):
             return Status.OK
         self.q = there
         return why if status is Status.SINGULAR and not len(rows) else status
+
+    def _beside(self, rows: Array, flags: _Flags, pose: Array) -> bool:
+        """To the row that is next to where the arm is, if one is inside the limits."""
+        moved = np.abs(rows - self.q).max(axis=1)
+        k = int(moved.argmin()) if len(rows) else -1
+        if k < 0 or not moved[k] < _path_following_FARTHEST or self._arrive(rows[k], pose) is not Status.OK:
+            return False
+        self.crossed, self.singular = True, bool(flags[k])
+        return True
 
     def step(self, before: Array, pose: Array, depth: int) -> Status:
         """From a pose to the next, with halved steps where the rows do not follow the Jacobian."""
@@ -3563,11 +3592,11 @@ class _Walk:
             if follows or (depth == _DEEPEST and moved < _JUMP):
                 self.singular = bool(flags[k])
                 self.crossed = self.crossed or self.singular or across or not follows
-                return self._arrive(rows[k])
+                return self._arrive(rows[k], pose)
             status = Status.SINGULAR
         if depth == _DEEPEST or self.left < 0 or (depth >= _SHALLOW and not len(rows)):
             return status
-        middle = _path_following_between(before, pose)
+        middle = _pose_between(before, pose)
         first = self.step(before, middle, depth + 1)
         return first if first is not Status.OK else self.step(middle, pose, depth + 1)
 
@@ -3580,15 +3609,25 @@ class _Walk:
         a, b = arm.task.rows(*_tip_and_jacobian(arm.chain, np.array([self.q, row])))
         return bool(np.linalg.det(a.T @ b) < 0.0)
 
-    def _arrive(self, row: Array) -> Status:
-        """To a row, if it is inside the limits on the turn that it came to."""
+    def _arrive(self, row: Array, pose: Array) -> Status:
+        """To a row, if it is inside the limits on the turn that it came to, or to the one beside it that
+        is."""
+        policy = self.arm.policy
         if self.limits:
-            inside = np.clip(row, self.arm.lower, self.arm.upper)
-            if np.abs(inside - row).max() > self.arm.policy.limit_tolerance:
+            off = self._outside(row)
+            if policy.limit_tolerance < off <= policy.limit_reach:
+                placed = _solve_pose(self.arm, pose, None, row, True).q
+                beside = placed[np.abs(placed - row).max(axis=1) < _LEAST_OFF]
+                row, off = (beside[0], 0.0) if len(beside) else (row, off)
+            if off > policy.limit_tolerance:
                 return Status.LIMITS
-            row = inside
+            row = np.clip(row, self.arm.lower, self.arm.upper)
         self.q = row
         return Status.OK
+
+    def _outside(self, rows: Array) -> Any:
+        """How far rows (..., dof) are outside the limits, (...) in rad or m."""
+        return np.maximum(self.arm.lower - rows, rows - self.arm.upper).max(axis=-1)
 
     def _expected(self, pose: Array, stopped: Mapping[int, float]) -> Array:
         """Where the shortest motion by the Jacobian of joints that are not stopped leads."""
@@ -3618,28 +3657,20 @@ class _Walk:
     def _rows(self, pose: Array) -> tuple[Array, _Flags, Status, Array]:
         """All rows without limits."""
         found = _solve_pose(self.arm, pose, None, self.q, False)
-        return found.q, found.singular, found.status, self._expected(pose, {})
+        open_ = self._open(found.q)
+        return found.q[open_], found.singular[open_], found.status, self._expected(pose, {})
 
+    def _open(self, rows: Array) -> _Flags:
+        """Where rows (n, dof) go on."""
+        inside = self._outside(rows) <= self.arm.policy.limit_reach
+        both = self.limits and inside.any() and not inside.all()
+        return inside if both and self._singular(self.q[None])[0] else np.ones(len(rows), bool)
 
-def _path_following_between(a: Array, b: Array) -> Array:
-    """The pose halfway (4, 4)."""
-    T = 0.5 * (a + b)
-    R = a[:3, :3].T @ b[:3, :3]
-    w = np.array([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]])
-    sine, cosine = 0.5 * float(np.linalg.norm(w)), 0.5 * (float(np.trace(R)) - 1.0)
-    angle = float(np.arctan2(sine, cosine))
-    if sine > 1e-6:
-        axis = w / (2.0 * sine)
-    elif cosine > 0.0:
-        return np.asarray(np.where(np.arange(4) == 3, T, a))
-    else:
-        S = R + np.eye(3)
-        column = S[:, int(np.argmax(np.diag(S)))]
-        axis = column / np.linalg.norm(column)
-    K = np.cross(np.eye(3), axis)
-    half = 0.5 * angle
-    T[:3, :3] = a[:3, :3] @ (np.eye(3) + np.sin(half) * K + (1.0 - np.cos(half)) * K @ K)
-    return T
+    def _singular(self, rows: Array) -> _Flags:
+        """Where all joints together lose a freedom (n,)."""
+        arm = self.arm
+        sigma = _smallest_singular_values(arm.chain, arm.task, range(rows.shape[1]), rows, arm.rank)
+        return np.asarray(sigma < arm.policy.singular_below)
 
 
 # Tasks that read some entries of the pose.

@@ -13,7 +13,9 @@ from tests.support.given_rows import given_arm
 
 from ikgen.runtime.python.arm.chain_kinematics import forward, tip_and_jacobian
 from ikgen.runtime.python.rows.solutions import Solutions, Status
-from ikgen.runtime.python.solving.path_following import _between, _Walk
+from ikgen.runtime.python.solving import path_following
+from ikgen.runtime.python.solving.path_following import _Walk
+from ikgen.runtime.python.solving.pose_between import pose_between
 
 Array = NDArray[np.float64]
 
@@ -39,7 +41,7 @@ def test_the_pose_halfway_has_half_of_the_turn(angle: float) -> None:
         a = turn(rng.normal(size=3), 1.2, (0.3, -0.2, 0.9))
         b = a @ turn(way, angle)
         b[:3, 3] = 1.0, 0.5, -0.3
-        middle = _between(a, b)
+        middle = pose_between(a, b)
         np.testing.assert_allclose(middle[:3, 3], [0.65, 0.15, 0.3], atol=1e-15)
         np.testing.assert_allclose(middle[3], [0.0, 0.0, 0.0, 1.0])
         half = a[:3, :3].T @ middle[:3, :3]
@@ -48,18 +50,32 @@ def test_the_pose_halfway_has_half_of_the_turn(angle: float) -> None:
         assert np.trace(half) >= 1.0 - 1e-6  # at most a quarter of a turn
 
 
-def test_a_walk_arrives_inside_the_limits_or_not_at_all() -> None:
+def test_a_walk_arrives_inside_the_limits_or_not_at_all(monkeypatch: pytest.MonkeyPatch) -> None:
     arm: Any = SimpleNamespace(
-        lower=(-1.0, 0.0), upper=(1.0, 2.0), policy=SimpleNamespace(limit_tolerance=1e-9)
+        lower=np.array([-1.0, 0.0]), upper=np.array([1.0, 2.0]),
+        policy=SimpleNamespace(limit_tolerance=1e-9, limit_reach=1e-5),
+    )  # fmt: skip
+    placed: list[list[float]] = []
+    monkeypatch.setattr(
+        path_following, "solve_pose", lambda *_: SimpleNamespace(q=np.reshape(placed, (-1, 2)))
     )
+    here = np.eye(4)
     for limits in (True, False):
         walk = _Walk(arm, no_search, limits)
-        assert walk._arrive(np.array([0.5, 1.5])) is Status.OK and walk.q.tolist() == [0.5, 1.5]
-        told = walk._arrive(np.array([0.5, 2.0 + 3e-9]))
+        assert walk._arrive(np.array([0.5, 1.5]), here) is Status.OK
+        assert walk.q.tolist() == [0.5, 1.5]
+        told = walk._arrive(np.array([0.5, 2.0 + 3e-9]), here)
         assert told is (Status.LIMITS if limits else Status.OK)
         assert walk.q.tolist() == ([0.5, 1.5] if limits else [0.5, 2.0 + 3e-9])
-        assert walk._arrive(np.array([-1.0 - 5e-10, 0.0])) is Status.OK
+        assert walk._arrive(np.array([-1.0 - 5e-10, 0.0]), here) is Status.OK
         assert walk.q[0] == (-1.0 if limits else -1.0 - 5e-10)
+    walk = _Walk(arm, no_search, True)
+    placed.extend([[-0.9, 1.0], [0.5 + 1e-7, 2.0]])
+    assert walk._arrive(np.array([0.5, 2.0 + 3e-9]), here) is Status.OK
+    assert walk.q.tolist() == [0.5 + 1e-7, 2.0]
+    assert walk._arrive(np.array([0.5, 2.0 + 3e-5]), here) is Status.LIMITS
+    del placed[1]
+    assert walk._arrive(np.array([0.5, 2.0 + 3e-9]), here) is Status.LIMITS
 
 
 def test_the_shortest_motion_is_the_damped_least_squares_one() -> None:
@@ -118,7 +134,7 @@ def test_long_ways_are_gone_in_steps_of_less_than_a_third_of_a_radian() -> None:
         def rows(pose: Array) -> Any:
             return pose[:1, 3][None], np.zeros(1, dtype=bool), Status.OK, pose[:1, 3]
 
-        def arrive(row: Array, walk: _Walk = walk, at: list[float] = at) -> Status:
+        def arrive(row: Array, _: Array, walk: _Walk = walk, at: list[float] = at) -> Status:
             at.append(float(row[0]))
             walk.q = row
             return Status.OK

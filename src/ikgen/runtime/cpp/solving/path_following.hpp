@@ -6,9 +6,9 @@
 #include <cmath>
 #include <cstddef>
 
-#include "newton/newton_refinement.hpp"
 #include "arguments/pose_reading.hpp"
 #include "rows/singular_value.hpp"
+#include "solving/shortest_motion.hpp"
 
 namespace ikgen_runtime {
 
@@ -17,7 +17,8 @@ template <class Arm, class Solver> struct PathStep {
   static constexpr int kDof = Arm::kDof, kDeepest = 24, kShallow = 9;
   static constexpr int kMost = 1000;  // steps to a pose, where rows follow at no length
   static constexpr double kFarthest = 0.3, kAway = 1.0, kOff = 0.2, kLeastOff = 1e-4, kJump = 0.05;
-  static constexpr double kDamping = 1e-8, kLeastDamping = 1e-14;  // where Newton steps arrive, and where they foretell
+  static constexpr double kLeastDamping = 1e-14;  // where steps foretell the next row
+  using Shortest = ShortestMotion<Arm>;
   using Status = typename Arm::Status;
 
   double q[kDof];
@@ -38,14 +39,11 @@ template <class Arm, class Solver> struct PathStep {
     std::copy_n(here, kDof, expected);
     bool singular = false;
     Status why = next_row(pose, expected, row, singular);
-    if (Arm::kFree > 0 && status == Status::Unreachable && why == Status::Unreachable) {
-      why = search(pose, last, limits, row, singular);
-      if (why == Status::Ok) status = Status::Singular;
-    }
-    if (why == Status::Ok && farthest(row, here) < kFarthest && arrive(row) == Status::Ok) {
-      crossed = true;
-      at_singularity = singular;
-      return Status::Ok;
+    if (why == Status::Ok && beside(row, singular, pose)) return Status::Ok;
+    if (Arm::kFree > 0 && status != Status::Ok) {
+      const Status found = search(pose, last, limits, row, singular);
+      if (found == Status::Ok && beside(row, singular, pose)) return Status::Ok;
+      if (status == Status::Unreachable && why == Status::Unreachable && found == Status::Ok) why = status = Status::Singular;
     }
     std::copy_n(there, kDof, q);
     return status == Status::Singular && why != Status::Ok ? why : status;
@@ -58,7 +56,7 @@ template <class Arm, class Solver> struct PathStep {
     bool singular = false;
     const bool none[kDof] = {};
     std::copy_n(q, kDof, expected);
-    move(expected, pose, none, kLeastDamping);
+    Shortest::move(expected, pose, none, kLeastDamping);
     Status status = next_row(pose, expected, row, singular);
     if (status == Status::Ok) {
       const double gap = farthest(row, expected), moved = farthest(row, q);
@@ -68,7 +66,7 @@ template <class Arm, class Solver> struct PathStep {
       if (follows || (depth == kDeepest && moved < kJump)) {
         crossed = crossed || singular || across || !follows;
         at_singularity = singular;
-        return arrive(row);
+        return arrive(row, pose);
       }
       status = Status::Singular;
     } else if (depth >= kShallow) {
@@ -86,7 +84,8 @@ template <class Arm, class Solver> struct PathStep {
     if constexpr (Arm::kFree > 0) {
       double row[kDof], expected[kDof];
       std::copy_n(q, kDof, expected);
-      if (unstopped(pose, expected, row, crossed) == Status::Ok && farthest(row, q) < 0.1 && arrive(row) == Status::Ok) return Status::Ok;
+      if (unstopped(pose, expected, row, crossed) == Status::Ok && farthest(row, q) < 0.1 && arrive(row, pose) == Status::Ok)
+        return Status::Ok;
     }
     return search(pose, start, limits, q, crossed);
   }
@@ -113,33 +112,39 @@ template <class Arm, class Solver> struct PathStep {
     return most;
   }
 
-  // To a row, if it is inside the limits on the turn that it came to.
-  Status arrive(const double* row) noexcept {
-    for (int j = 0; j < kDof && limits; ++j)
-      if (!(row[j] >= Arm::kLower.data()[j] - Arm::Policy::kLimitTolerance && row[j] <= Arm::kUpper.data()[j] + Arm::Policy::kLimitTolerance))
-        return Status::Limits;
-    for (int j = 0; j < kDof; ++j)
-      q[j] = limits ? std::min(std::max(row[j], Arm::kLower.data()[j]), Arm::kUpper.data()[j]) : row[j];
+  // To a row that is next to where the arm is, if it is inside the limits.
+  bool beside(const double* row, bool singular, const Eigen::Isometry3d& pose) noexcept {
+    if (!(farthest(row, q) < kFarthest) || arrive(row, pose) != Status::Ok) return false;
+    crossed = true;
+    at_singularity = singular;
+    return true;
+  }
+
+  // To a row, if it is inside the limits on the turn that it came to, or to the one beside it that is: rounding may move it out.
+  Status arrive(const double* row, const Eigen::Isometry3d& pose) noexcept {
+    double placed[kDof];
+    std::copy_n(row, kDof, placed);
+    double off = limits ? outside(row) : 0.0;
+    if (off > Arm::Policy::kLimitTolerance && off <= Arm::Policy::kLimitReach) {
+      const typename Arm::Solutions inside = rows_of(pose, row, true);
+      for (int k = inside.count - 1; k >= 0; --k) {
+        const double* one = inside.q.data()[k].data();
+        if (!(farthest(one, row) < kLeastOff)) continue;
+        std::copy_n(one, kDof, placed);
+        off = 0.0;
+      }
+    }
+    if (off > Arm::Policy::kLimitTolerance) return Status::Limits;
+    for (int j = 0; j < kDof; ++j) q[j] = limits ? clipped(placed, j) : placed[j];
     return Status::Ok;
   }
 
-  // The shortest motion by the Jacobian, of joints that are not stopped; the error before it.
-  static double move(double* at, const Eigen::Isometry3d& pose, const bool* stopped, double damping) noexcept {
-    PoseError<AllMoving<Arm>> here(at, HeldAim<AllMoving<Arm>>(pose));
-    constexpr int n = PoseError<AllMoving<Arm>>::kCount;
-    const double worst = here.largest();
-    double N[n][n];
-    here.hold(stopped);
-    gram_of_rows(here.slope, N);
-    shift_diagonal(damping, N);
-    factor(N);
-    substitute(N, here.error);
-    for (int j = 0; j < kDof; ++j) {
-      double step = 0.0;
-      for (int a = 0; a < n; ++a) step += here.slope[a][j] * here.error[a];
-      at[j] += std::min(std::max(step, -1.0), 1.0);
-    }
-    return worst;
+  // How far a row is outside the limits; negative inside.
+  static double outside(const double* row) noexcept {
+    double most = -kInfinity;
+    for (int j = 0; j < kDof; ++j)
+      most = std::max(most, std::max(Arm::kLower.data()[j] - row[j], row[j] - Arm::kUpper.data()[j]));
+    return most;
   }
 
   // The row that goes on from here: of an arm without held joints the closed form's nearest to the expected one, of
@@ -153,25 +158,37 @@ template <class Arm, class Solver> struct PathStep {
     }
   }
 
-  // The closed form's row nearest to the expected one, what is held as `nearby` has it.
-  static Status closed_form(const Eigen::Isometry3d& pose, const double* nearby, const double* expected, double* row,
-                            bool& singular) noexcept {
-    typename Arm::Options options;
-    typename Arm::Joints seed;
-    std::copy_n(nearby, kDof, seed.data());
-    options.seed = &seed;
-    options.limits = false;
-    typename Arm::Solutions found;
-    Solver::solve(pose, options, found);
+  // The closed form's row nearest to the expected one, what is held as `nearby` has it; from a singularity, where branches meet,
+  // of those inside the limits if there are any.
+  Status closed_form(const Eigen::Isometry3d& pose, const double* nearby, const double* expected, double* row,
+                     bool& singular) const noexcept {
+    typename Arm::Solutions found = rows_of(pose, nearby, false);
+    const auto inside = [&](int k) noexcept { return !(outside(found.q.data()[k].data()) > Arm::Policy::kLimitReach); };
+    int some = 0;
+    for (int k = 0; k < found.count; ++k) some += inside(k);
+    const bool left_out = limits && some > 0 && some < found.count &&
+                          SingularValue<AllMoving<Arm>>::redundant_below(q, Arm::Policy::kSingularBelow);
     double least = kInfinity;
     for (int k = 0; k < found.count; ++k) {
       const double gap = farthest(found.q.data()[k].data(), expected);
-      if (!(gap < least)) continue;
+      if (!(gap < least) || (left_out && !inside(k))) continue;
       least = gap;
       std::copy_n(found.q.data()[k].data(), kDof, row);
       singular = found.singular.data()[k];
     }
     return found.status;
+  }
+
+  // The closed form's rows, nearest first, what is held as `nearby` has it.
+  static typename Arm::Solutions rows_of(const Eigen::Isometry3d& pose, const double* nearby, bool limits) noexcept {
+    typename Arm::Options options;
+    typename Arm::Joints seed;
+    std::copy_n(nearby, kDof, seed.data());
+    options.seed = &seed;
+    options.limits = limits;
+    typename Arm::Solutions found;
+    Solver::solve(pose, options, found);
+    return found;
   }
 
   // Where the steps end beside the pose, as at a fold, of the rows with what is held where they ended. Before, a joint
@@ -181,12 +198,12 @@ template <class Arm, class Solver> struct PathStep {
     double at[kDof];
     std::copy_n(q, kDof, at);
     for (bool any = false;; any = true) {
-      const bool arrived = newton(at, pose, stopped, row);
+      const bool arrived = Shortest::newton(at, pose, stopped, row);
       const int joint = arrived ? farthest_out(row) : pulled_off(row, pose, stopped, released);
       if (joint < 0 && arrived) {
         if (any) {
           std::copy_n(at, kDof, expected);
-          move(expected, pose, stopped, kLeastDamping);
+          Shortest::move(expected, pose, stopped, kLeastDamping);
         }
         break;
       }
@@ -206,25 +223,6 @@ template <class Arm, class Solver> struct PathStep {
 
   static double clipped(const double* row, int j) noexcept {
     return std::min(std::max(row[j], Arm::kLower.data()[j]), Arm::kUpper.data()[j]);
-  }
-
-  // The best row of shortest motions of joints that are not stopped; whether it has the pose.
-  static bool newton(const double* from, const Eigen::Isometry3d& pose, const bool* stopped, double* row) noexcept {
-    double error = kInfinity, tried[kDof];
-    std::copy_n(from, kDof, row);
-    std::copy_n(from, kDof, tried);
-    for (int i = 0; i < 30; ++i) {
-      double before[kDof];
-      std::copy_n(tried, kDof, before);
-      const double here = move(tried, pose, stopped, kDamping);
-      const bool slow = !(here < 0.5 * error);
-      if (here < error) {
-        error = here;
-        std::copy_n(before, kDof, row);
-      }
-      if ((slow && i > 2) || error < Arm::Policy::kConverged) break;
-    }
-    return error < Arm::Policy::kArrived;
   }
 
   // The joint that is farthest out of its limits, if one is.

@@ -18,6 +18,7 @@ from ikgen.runtime.python.arm.solved_arm import Arm
 from ikgen.runtime.python.arrays.array_types import Array, Flags
 from ikgen.runtime.python.newton.refinement import smallest_singular_values
 from ikgen.runtime.python.rows.solutions import Solutions, Status
+from ikgen.runtime.python.solving.pose_between import pose_between
 from ikgen.runtime.python.solving.pose_solving import solve_pose
 
 __all__ = ["Path", "follow_poses"]
@@ -98,7 +99,7 @@ class _Walk:
             rows, flags, *_ = self._unstopped(pose)
             if len(rows) and np.abs(rows[0] - start).max() < _BESIDE_START:
                 self.crossed = bool(flags[0])
-                return self._arrive(rows[0])
+                return self._arrive(rows[0], pose)
         found = self.search(pose, start, self.limits)
         if len(found):
             self.q, self.crossed = found.q[0], bool(found.singular[0])
@@ -114,18 +115,25 @@ class _Walk:
             return status
         there, self.q = self.q, here
         rows, flags, why, _ = self._rows(pose)
-        if self.arm.free_joints and status is why is Status.UNREACHABLE:
-            found = self.search(pose, here, self.limits)
-            rows, flags = found.q, found.singular
-            status = Status.SINGULAR if len(rows) else status
-        moved = np.abs(rows - here).max(axis=1)
-        near = len(rows) and moved.min() < _FARTHEST
-        k = int(moved.argmin()) if near else 0
-        if near and self._arrive(rows[k]) is Status.OK:
-            self.crossed, self.singular = True, bool(flags[k])
+        if self._beside(rows, flags, pose):
             return Status.OK
+        if self.arm.free_joints and status is not Status.OK:
+            found = self.search(pose, here, self.limits)
+            if self._beside(found.q, found.singular, pose):
+                return Status.OK
+            if status is why is Status.UNREACHABLE and len(found):
+                why = status = Status.SINGULAR
         self.q = there
         return why if status is Status.SINGULAR and not len(rows) else status
+
+    def _beside(self, rows: Array, flags: Flags, pose: Array) -> bool:
+        """To the row that is next to where the arm is, if one is inside the limits."""
+        moved = np.abs(rows - self.q).max(axis=1)
+        k = int(moved.argmin()) if len(rows) else -1
+        if k < 0 or not moved[k] < _FARTHEST or self._arrive(rows[k], pose) is not Status.OK:
+            return False
+        self.crossed, self.singular = True, bool(flags[k])
+        return True
 
     def step(self, before: Array, pose: Array, depth: int) -> Status:
         """From a pose to the next, with halved steps where the rows do not follow the Jacobian."""
@@ -141,11 +149,11 @@ class _Walk:
             if follows or (depth == _DEEPEST and moved < _JUMP):
                 self.singular = bool(flags[k])
                 self.crossed = self.crossed or self.singular or across or not follows
-                return self._arrive(rows[k])
+                return self._arrive(rows[k], pose)
             status = Status.SINGULAR
         if depth == _DEEPEST or self.left < 0 or (depth >= _SHALLOW and not len(rows)):
             return status
-        middle = _between(before, pose)
+        middle = pose_between(before, pose)
         first = self.step(before, middle, depth + 1)
         return first if first is not Status.OK else self.step(middle, pose, depth + 1)
 
@@ -158,15 +166,25 @@ class _Walk:
         a, b = arm.task.rows(*tip_and_jacobian(arm.chain, np.array([self.q, row])))
         return bool(np.linalg.det(a.T @ b) < 0.0)
 
-    def _arrive(self, row: Array) -> Status:
-        """To a row, if it is inside the limits on the turn that it came to."""
+    def _arrive(self, row: Array, pose: Array) -> Status:
+        """To a row, if it is inside the limits on the turn that it came to, or to the one beside it that
+        is: rounding may move it out."""
+        policy = self.arm.policy
         if self.limits:
-            inside = np.clip(row, self.arm.lower, self.arm.upper)
-            if np.abs(inside - row).max() > self.arm.policy.limit_tolerance:
+            off = self._outside(row)
+            if policy.limit_tolerance < off <= policy.limit_reach:
+                placed = solve_pose(self.arm, pose, None, row, True).q
+                beside = placed[np.abs(placed - row).max(axis=1) < _LEAST_OFF]
+                row, off = (beside[0], 0.0) if len(beside) else (row, off)
+            if off > policy.limit_tolerance:
                 return Status.LIMITS
-            row = inside
+            row = np.clip(row, self.arm.lower, self.arm.upper)
         self.q = row
         return Status.OK
+
+    def _outside(self, rows: Array) -> Any:
+        """How far rows (..., dof) are outside the limits, (...) in rad or m; negative inside."""
+        return np.maximum(self.arm.lower - rows, rows - self.arm.upper).max(axis=-1)
 
     def _expected(self, pose: Array, stopped: Mapping[int, float]) -> Array:
         """Where the shortest motion by the Jacobian of joints that are not stopped leads."""
@@ -199,7 +217,15 @@ class _Walk:
         if self.arm.free_joints:
             return self._unstopped(pose)
         found = solve_pose(self.arm, pose, None, self.q, False)
-        return found.q, found.singular, found.status, self._expected(pose, {})
+        open_ = self._open(found.q)
+        return found.q[open_], found.singular[open_], found.status, self._expected(pose, {})
+
+    def _open(self, rows: Array) -> Flags:
+        """Where rows (n, dof) go on: from a singularity, where branches meet, those inside the limits if
+        there are any."""
+        inside = self._outside(rows) <= self.arm.policy.limit_reach
+        both = self.limits and inside.any() and not inside.all()
+        return inside if both and self._singular(self.q[None])[0] else np.ones(len(rows), bool)
 
     def _unstopped(self, pose: Array) -> tuple[Array, Flags, Status, Array]:
         """The row next to the expected one that all joints reach together, those that it would take out
@@ -223,6 +249,7 @@ class _Walk:
             if freed is None:
                 held = np.clip(q, low, high) if self.limits else q
                 rows = solve_pose(arm, pose, None, held, False).q
+                rows = rows[self._open(rows)]
                 why = Status.LIMITS if stopped or released else Status.UNREACHABLE
                 status = Status.OK if len(rows) else why
                 return rows, self._singular(rows), status, self._expected(pose, {})
@@ -256,25 +283,3 @@ class _Walk:
                 break
             q = q + step
         return best, least
-
-
-def _between(a: Array, b: Array) -> Array:
-    """The pose halfway (4, 4): the middle of the positions, half of the turn between (its axis by the
-    antisymmetric part, or the largest column of the symmetric one for half turns)."""
-    T = 0.5 * (a + b)
-    R = a[:3, :3].T @ b[:3, :3]
-    w = np.array([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]])
-    sine, cosine = 0.5 * float(np.linalg.norm(w)), 0.5 * (float(np.trace(R)) - 1.0)
-    angle = float(np.arctan2(sine, cosine))
-    if sine > 1e-6:
-        axis = w / (2.0 * sine)
-    elif cosine > 0.0:
-        return np.asarray(np.where(np.arange(4) == 3, T, a))
-    else:
-        S = R + np.eye(3)
-        column = S[:, int(np.argmax(np.diag(S)))]
-        axis = column / np.linalg.norm(column)
-    K = np.cross(np.eye(3), axis)
-    half = 0.5 * angle
-    T[:3, :3] = a[:3, :3] @ (np.eye(3) + np.sin(half) * K + (1.0 - np.cos(half)) * K @ K)
-    return T
