@@ -124,17 +124,13 @@ template <class Arm, class Solver> struct PathStep {
   Status arrive(const double* row, const Eigen::Isometry3d& pose) noexcept {
     double placed[kDof];
     std::copy_n(row, kDof, placed);
-    double off = limits ? outside(row) : 0.0;
-    if (off > Arm::Policy::kLimitTolerance && off <= Arm::Policy::kLimitReach) {
+    if (farthest_out(row) >= 0) {
+      if (outside(row) > Arm::Policy::kLimitReach) return Status::Limits;
       const typename Arm::Solutions inside = rows_of(pose, row, true);
-      for (int k = inside.count - 1; k >= 0; --k) {
-        const double* one = inside.q.data()[k].data();
-        if (!(farthest(one, row) < kLeastOff)) continue;
-        std::copy_n(one, kDof, placed);
-        off = 0.0;
-      }
+      const double* nearest = inside.q.data()[0].data();
+      if (inside.count == 0 || !(farthest(nearest, row) < kLeastOff)) return Status::Limits;
+      std::copy_n(nearest, kDof, placed);
     }
-    if (off > Arm::Policy::kLimitTolerance) return Status::Limits;
     for (int j = 0; j < kDof; ++j) q[j] = limits ? clipped(placed, j) : placed[j];
     return Status::Ok;
   }
@@ -142,9 +138,11 @@ template <class Arm, class Solver> struct PathStep {
   // How far a row is outside the limits; negative inside.
   static double outside(const double* row) noexcept {
     double most = -kInfinity;
-    for (int j = 0; j < kDof; ++j)
-      most = std::max(most, std::max(Arm::kLower.data()[j] - row[j], row[j] - Arm::kUpper.data()[j]));
+    for (int j = 0; j < kDof; ++j) most = std::max(most, excess(row, j));
     return most;
+  }
+  static double excess(const double* row, int j) noexcept {
+    return std::max(Arm::kLower.data()[j] - row[j], row[j] - Arm::kUpper.data()[j]);
   }
 
   // The row that goes on from here: of an arm without held joints the closed form's nearest to the expected one, of
@@ -227,15 +225,10 @@ template <class Arm, class Solver> struct PathStep {
 
   // The joint that is farthest out of its limits, if one is.
   int farthest_out(const double* row) const noexcept {
-    double most = Arm::Policy::kLimitTolerance;
-    int worst = -1;
-    for (int j = 0; j < kDof && limits; ++j) {
-      const double excess = std::max(Arm::kLower.data()[j] - row[j], row[j] - Arm::kUpper.data()[j]);
-      if (!(excess > most)) continue;
-      most = excess;
-      worst = j;
-    }
-    return worst;
+    const double most = outside(row);
+    for (int j = 0; j < kDof && limits && most > Arm::Policy::kLimitTolerance; ++j)
+      if (!(excess(row, j) < most)) return j;
+    return -1;
   }
 
   // The stopped joint, not released before, by whose motion off its limit the error shrinks most, if one is.

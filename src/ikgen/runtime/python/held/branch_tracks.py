@@ -60,7 +60,7 @@ def tracked(joint: HeldJoint, T: Array, low: float, high: float, limits: bool) -
         if not fixed:
             doubtful = _doubtful(joint, rows, following, limits)
             fine = doubtful & (np.diff(held) <= _NARROW * (high - low))
-            left -= np.count_nonzero(fine)
+            left -= int(fine.sum())
             middle = middle[doubtful & (~fine | (left >= 0))]
         if fixed or not len(middle):
             off = outside(arm, rows.q, limits) - arm.policy.limit_tolerance
