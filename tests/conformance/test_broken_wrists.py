@@ -128,3 +128,17 @@ def test_solutions_where_curves_cross_are_found(tmp_path: Path) -> None:
     q[:, 3] = -0.0024 + 1e-5 * np.arange(-20, 20)
     arm, header = emitted_in_both(Request(path, name="wrist", free={"j0": -2.2057}), tmp_path)
     assert gaps_in_both(arm, header, q).max() < 1e-4
+
+
+def test_a_short_curve_leads_to_the_broken_continuum_that_it_crosses(tmp_path: Path) -> None:
+    """With the wrist straight no branch comes near a solution that the other joints of it turn away from:
+    those beside lie on a curve that ends after a step, and crosses the wrist's."""
+    file = Path(__file__).parents[2] / "urdf_fixtures" / "doosan_m1013.urdf"
+    arm, header = emitted_in_both(Request(file), tmp_path)
+    random = np.random.default_rng(0)
+    q = np.repeat(
+        [[-1.261888674, -2.512877859, -1.336984272, 0.557552949, 0.0, 2.097589591]], 80, 0
+    )
+    q += random.normal(size=q.shape) * np.repeat([[1e-9], [1e-6], [1e-5], [3e-4]], 20, axis=0)
+    q[::2, 4] = 0.0
+    assert gaps_in_both(arm, header, q).max() < 1e-3

@@ -1900,7 +1900,7 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
     }
     crossings = 0;
     const Kind kind = follow_both(first, keeps, passed);
-    if (kind != Kind::Broken || lost) return kind;
+    if (kind == Kind::Whole || lost) return kind;
     const int noted = crossings, own = passing;
     crossings = kCrossings;  // those of the others do not count
     for (int i = 0; i < noted; ++i) follow_other(crossing[i], passed);

@@ -1646,8 +1646,7 @@ def _found_around(
         q = np.where(lie[index, None], ends.q[index], starts.q[index])
         curve, owner, rows, sigma = arm.around(arm, q, starts.T[index], lie[index])
         on[_first_of(branch, index[curve])] = True
-        more = _Led(index[owner], rows, sigma)
-        found = _joined(found, _some_of(more, on[more.owner]))
+        found = _joined(found, _Led(index[owner], rows, sigma))
         left = np.setdiff1d(left[~np.isin(branch[left], branch[on])], index)
     return found, on
 
@@ -2215,7 +2214,7 @@ def _rows_around(arm: _Arm, q: Array, T: Array, broken: _Flags) -> tuple[_Flags,
     best = np.lexsort((error, owner))
     best = best[_places(owner[best]) == 0]
     best = best[~np.isin(owner[best], owner[exact]) & (error[best] < arm.policy.arrived)]
-    best = best[~broken[owner[best]]]
+    best = best[traced.curve[owner[best]] & ~broken[owner[best]]]
     some = np.concatenate([np.flatnonzero(exact), best])
     some = some[np.argsort(owner[some], kind="stable")]
     curve = np.where(broken, traced.broken, traced.curve)
@@ -2224,7 +2223,7 @@ def _rows_around(arm: _Arm, q: Array, T: Array, broken: _Flags) -> tuple[_Flags,
 
 def _trace(arm: _Arm, q: Array, T: Array) -> _Traced:
     """The curves through rows q (k, dof) towards aims T (k, ...), once around, or to both their ends, and
-    others that cross broken ones."""
+    others that cross those that the file's arm has not."""
     asked = np.concatenate([q, T.reshape(len(q), -1)], axis=1)
     _, first, again = np.unique(asked, axis=0, return_index=True, return_inverse=True)
     again = again.reshape(-1)
@@ -2240,8 +2239,9 @@ def _traced(arm: _Arm, q: Array, T: Array) -> tuple[_Index, _Flags, _Flags, _Ind
     curves = _followed(arm, q, T)
     steps, broken = _kinds(arm, curves)
     here, last = (_some_of(some, broken[some.owner]) for some in curves[:2])
-    crossings = _crossings_of(arm, here, T)
-    parts: _Parts = _joined(here, last, _crossing_parts(arm, here, crossings, T))
+    crossed = _some_of(curves.parts, (broken | (steps < _LEAST))[curves.parts.owner])
+    crossings = _crossings_of(arm, crossed, T)
+    parts: _Parts = _joined(here, last, _crossing_parts(arm, crossed, crossings, T))
     owner, found = _look(arm, parts, T, steps)
     # beside a crossing samples go astray to the other curve: steps begin there, wherever those led
     owner = np.concatenate([owner, np.repeat(crossings.owner, 2)])
@@ -2260,7 +2260,7 @@ def _kinds(arm: _Arm, curves: _Walked) -> tuple[_Index, _Flags]:
 
 
 def _crossing_parts(arm: _Arm, parts: _Parts, crossings: _Crossings, T: Array) -> _Parts:
-    """The parts of broken curves that cross those of some parts."""
+    """The parts of broken curves that cross curves of some parts."""
     owner, _, q = crossings
     none: _Parts = _some_of(parts, owner[:0])
     if not len(owner):

@@ -48,7 +48,7 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
   int met = 0;      // solutions on the last one, be it too short for one or the file's
 
   // Finds those on the curve through a configuration: once around, or to both its ends; of one that is too short only
-  // where it could not be followed.
+  // where it could not be followed; and those on others that cross it.
   Kind trace(const double* start, Passed& passed) noexcept {
     const Sample first = at(start);
     const bool keeps = Curve::fold.in_sense();
@@ -59,7 +59,7 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
     }
     crossings = 0;
     const Kind kind = follow_both(first, keeps, passed);
-    if (kind != Kind::Broken || lost) return kind;
+    if (kind == Kind::Whole || lost) return kind;
     const int noted = crossings, own = passing;
     crossings = kCrossings;  // those of the others do not count
     for (int i = 0; i < noted; ++i) follow_other(crossing[i], passed);

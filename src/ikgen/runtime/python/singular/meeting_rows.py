@@ -158,8 +158,7 @@ def _found_around(
         q = np.where(lie[index, None], ends.q[index], starts.q[index])
         curve, owner, rows, sigma = arm.around(arm, q, starts.T[index], lie[index])
         on[_first_of(branch, index[curve])] = True
-        more = Led(index[owner], rows, sigma)
-        found = joined(found, some_of(more, on[more.owner]))
+        found = joined(found, Led(index[owner], rows, sigma))
         left = np.setdiff1d(left[~np.isin(branch[left], branch[on])], index)
     return found, on
 

@@ -41,9 +41,10 @@ class Traced(NamedTuple):
 
 def rows_around(arm: Arm, q: Array, T: Array, broken: Flags) -> tuple[Flags, Index, Array, Array]:
     """Which rows q (k, dof) towards aims T (k, ...) stand for a continuum of the solved geometry; from
-    which (n,) the solutions (n, dof) all around are, or one where the file's arm has the continuum too, and
-    the smallest singular values (n,) there. `broken` (k,): from which only of such that the file's arm has
-    not, and no others than those that are right to round-off."""
+    which (n,) the solutions (n, dof) all around are, or one where the file's arm has the continuum too, or
+    those on others that cross what is too short for one, and the smallest singular values (n,) there.
+    `broken` (k,): from which only of such that the file's arm has not, and no others than those that are
+    right to round-off."""
     with np.errstate(all="ignore"):
         traced = trace(arm, q, T)
     given = np.flatnonzero(traced.curve & ~broken)
@@ -53,7 +54,7 @@ def rows_around(arm: Arm, q: Array, T: Array, broken: Flags) -> tuple[Flags, Ind
     best = np.lexsort((error, owner))
     best = best[places(owner[best]) == 0]
     best = best[~np.isin(owner[best], owner[exact]) & (error[best] < arm.policy.arrived)]
-    best = best[~broken[owner[best]]]
+    best = best[traced.curve[owner[best]] & ~broken[owner[best]]]
     some = np.concatenate([np.flatnonzero(exact), best])
     some = some[np.argsort(owner[some], kind="stable")]
     curve = np.where(broken, traced.broken, traced.curve)
@@ -62,7 +63,7 @@ def rows_around(arm: Arm, q: Array, T: Array, broken: Flags) -> tuple[Flags, Ind
 
 def trace(arm: Arm, q: Array, T: Array) -> Traced:
     """The curves through rows q (k, dof) towards aims T (k, ...), once around, or to both their ends, and
-    others that cross broken ones; of rows on the same curve one is followed."""
+    others that cross those that the file's arm has not; of rows on the same curve one is followed."""
     asked = np.concatenate([q, T.reshape(len(q), -1)], axis=1)
     _, first, again = np.unique(asked, axis=0, return_index=True, return_inverse=True)
     again = again.reshape(-1)
@@ -78,8 +79,9 @@ def _traced(arm: Arm, q: Array, T: Array) -> tuple[Index, Flags, Flags, Index, A
     curves = followed(arm, q, T)
     steps, broken = _kinds(arm, curves)
     here, last = (some_of(some, broken[some.owner]) for some in curves[:2])
-    crossings = crossings_of(arm, here, T)
-    parts: Parts = joined(here, last, _crossing_parts(arm, here, crossings, T))
+    crossed = some_of(curves.parts, (broken | (steps < LEAST))[curves.parts.owner])
+    crossings = crossings_of(arm, crossed, T)
+    parts: Parts = joined(here, last, _crossing_parts(arm, crossed, crossings, T))
     owner, found = look(arm, parts, T, steps)
     # beside a crossing samples go astray to the other curve: steps begin there, wherever those led
     owner = np.concatenate([owner, np.repeat(crossings.owner, 2)])
@@ -98,7 +100,7 @@ def _kinds(arm: Arm, curves: Walked) -> tuple[Index, Flags]:
 
 
 def _crossing_parts(arm: Arm, parts: Parts, crossings: Crossings, T: Array) -> Parts:
-    """The parts of broken curves that cross those of some parts."""
+    """The parts of broken curves that cross curves of some parts."""
     owner, _, q = crossings
     none: Parts = some_of(parts, owner[:0])
     if not len(owner):
