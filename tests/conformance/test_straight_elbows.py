@@ -39,3 +39,27 @@ def test_a_straight_elbow_is_reached_next_to_a_straight_wrist(tmp_path: Path) ->
     poses = arm.forward(q)
     assert set(header.solve_many(poses).status) == {"OK"}
     assert all(arm.solve(pose).status == "OK" for pose in poses)
+
+
+SHOULDER_ELBOW_WRIST = [
+    ("0 0 0.34", "0 0 0"), ("0 0 0", f"{-np.pi / 2} 0 0"), ("0 -0.2 0", f"{np.pi / 2} 0 0"),
+    ("0 0 0.2", f"{np.pi / 2} 0 0"), ("0 0.2 0", f"{-np.pi / 2} 0 0"), ("0 0 0.2", f"{-np.pi / 2} 0 0"),
+    ("0 0 0", f"{np.pi / 2} 0 0"),
+]  # fmt: skip
+
+
+@pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "compiles")
+def test_an_arm_that_is_straight_from_shoulder_to_wrist_is_answered(tmp_path: Path) -> None:
+    """Joints 1, 3, 5 and 7 turn about one line, but for 1e-9: no direction is left of the others' angles,
+    and the sum of theirs alone is the pose's."""
+    limits = [(-2.9, 2.9), (-2.0, 2.0)] * 3 + [(-3.0, 3.0)]
+    path = serial_urdf(tmp_path / "straight.urdf", SHOULDER_ELBOW_WRIST, limit=limits)
+    arm, header = emitted_in_both(Request(path, free={"j4": 0.0}), tmp_path)
+    random = np.random.default_rng(0)
+    q = np.pi / 4 * random.integers(-3, 4, (600, 7))
+    q[:, 1::2] = 0.0
+    q = q + random.normal(size=q.shape) * 10.0 ** random.uniform(-12, -8, (600, 1))
+    q[:, 4] = 0.0
+    poses = arm.forward(q)
+    assert set(header.solve_many(poses).status) == {"OK"}
+    assert all(arm.solve(pose).status == "OK" for pose in poses[:100])

@@ -2300,6 +2300,9 @@ template <class Arm> struct CarefulRows {
   static void find_lanes(const Eigen::Isometry3d& pose, const double* q0, const Options& options, Rows& out) noexcept {
     constexpr Range anywhere = {kUnbounded<Arm::kDof>.lower, kUnbounded<Arm::kDof>.upper};
     Arm::branches(gather<1>(&pose), typename Arm::Seed(q0), options.free, anywhere, out);
+    for (int j = 0; j < Arm::kDof; ++j)
+      for (double& q : out.q[j])
+        if (!std::isfinite(q)) q = q0[j];
   }
 
   static bool any_singular(const Places& rows) noexcept {

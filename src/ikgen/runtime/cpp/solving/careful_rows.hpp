@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iterator>
 
 #include "arm/joint_range.hpp"
@@ -31,10 +32,14 @@ template <class Arm> struct CarefulRows {
 
   static constexpr bool kBesideAnywhere = !(Policy::kBesideReach < Policy::kAnywhere);  // or only near singularities
 
-  // The closed form's rows without limits; q0 gives the values of joints that the pose leaves free.
+  // The closed form's rows without limits; q0 gives the values of joints that the pose leaves free, and of those whose
+  // direction has no digits left.
   static void find_lanes(const Eigen::Isometry3d& pose, const double* q0, const Options& options, Rows& out) noexcept {
     constexpr Range anywhere = {kUnbounded<Arm::kDof>.lower, kUnbounded<Arm::kDof>.upper};
     Arm::branches(gather<1>(&pose), typename Arm::Seed(q0), options.free, anywhere, out);
+    for (int j = 0; j < Arm::kDof; ++j)
+      for (double& q : out.q[j])
+        if (!std::isfinite(q)) q = q0[j];
   }
 
   static bool any_singular(const Places& rows) noexcept {
