@@ -163,3 +163,24 @@ def test_solutions_beside_a_continuum_are_found_where_the_polynomial_vanishes(
         for other in others:
             apart = np.abs(np.remainder(rows - other + np.pi, 2.0 * np.pi) - np.pi).max(axis=1)
             assert apart.min() < 1e-9
+
+
+@BOTH
+def test_a_root_without_a_solution_gives_no_row(language: str, tmp_path: Path) -> None:
+    """Beside right angles some roots lead to no numbers at all: these are as far off as can be."""
+    file = Path(__file__).parents[2] / "urdf_fixtures" / "fanuc_crx10ia.urdf"
+    derivation = derive(Request(file))
+    arm, random = arm_of(derivation), np.random.default_rng(0)
+    straight = (
+        np.pi
+        / 4
+        * np.array([[4, 0, 2, 1, -1, -3], [-1, 0, 2, 2.287, -2.66, -2.735], [-2, 0, 2, 3, -1, -4]])
+    )
+    q = straight[np.arange(300) % 3]
+    q = q + random.normal(size=q.shape) * 10.0 ** random.uniform(-9.5, -8, (300, 1))
+    sample = SampleSet("right angles", q, arm.oracle.forward(q), arm.sigma(q))
+    trial = run_trial(runner_of(derivation, language, tmp_path), arm, sample, limits=False)
+    rows, poses = trial.rows.q, sample.poses
+    for pose, found, count in zip(poses, rows, trial.rows.count, strict=True):
+        assert count
+        assert np.abs(arm.oracle.forward(found[:count]) - pose).max() < 1e-9

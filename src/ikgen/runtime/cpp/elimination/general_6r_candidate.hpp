@@ -74,6 +74,7 @@ using Vector = std::array<double, 6>;
 struct State {
   double error[6], slope[6][6] = {}, worst = 0.0;
   double largest() const noexcept { return worst; }
+  void add(double entry) noexcept { worst = std::isfinite(entry) ? std::max(worst, std::abs(entry)) : kInfinity; }
 };
 
 // A joint that moves an axis of a chain, and the axis' value by the joint's: ratio times it, and shift.
@@ -103,10 +104,10 @@ inline State residual(const Frames& F, const Frame& T, const double* q, const Tu
   for (Index i = 0; i < 3; ++i) {
     for (Index j = 0; j < 3; ++j) {
       for (Index k = 0; k < 3; ++k) S(i, j) += T.R[i][k] * X.R[j][k];
-      out.worst = std::max(out.worst, std::abs(T.R[i][j] - X.R[i][j]));
+      out.add(T.R[i][j] - X.R[i][j]);
     }
     out.error[i] = T.p[i] - X.p[i];
-    out.worst = std::max(out.worst, std::abs(out.error[i]));
+    out.add(out.error[i]);
   }
   for (Index k = 0; k < 3; ++k) {
     const Index m = (k + 1) % 3, n = (k + 2) % 3;

@@ -32,14 +32,14 @@ template <class Arm> struct CarefulRows {
 
   static constexpr bool kBesideAnywhere = !(Policy::kBesideReach < Policy::kAnywhere);  // or only near singularities
 
-  // The closed form's rows without limits; q0 gives the values of joints that the pose leaves free, and of those whose
-  // direction has no digits left.
+  // The closed form's rows without limits; q0 gives the values of joints that the pose leaves free, and, where a row is none
+  // but steps may begin, of those whose direction has no digits left.
   static void find_lanes(const Eigen::Isometry3d& pose, const double* q0, const Options& options, Rows& out) noexcept {
     constexpr Range anywhere = {kUnbounded<Arm::kDof>.lower, kUnbounded<Arm::kDof>.upper};
     Arm::branches(gather<1>(&pose), typename Arm::Seed(q0), options.free, anywhere, out);
-    for (int j = 0; j < Arm::kDof; ++j)
-      for (double& q : out.q[j])
-        if (!std::isfinite(q)) q = q0[j];
+    for (int lane = 0; lane < Arm::kLanes; ++lane)
+      for (int j = 0; j < Arm::kDof && out.has(lane, kSingular) && !out.has(lane, kReal); ++j)
+        if (!std::isfinite(out.q[j][lane])) out.q[j][lane] = q0[j];
   }
 
   static bool any_singular(const Places& rows) noexcept {
