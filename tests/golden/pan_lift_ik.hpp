@@ -751,7 +751,7 @@ template <class Arm> struct PoseError {
 
   double largest() const noexcept {
     double worst = 0.0;
-    for (const double x : error) worst = std::abs(x) <= worst ? worst : std::abs(x);
+    for (const double x : error) worst = std::isfinite(x) ? std::max(worst, std::abs(x)) : kInfinity;
     return worst;
   }
 };

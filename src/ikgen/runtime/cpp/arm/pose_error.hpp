@@ -1,9 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "arm/held_aim.hpp"
 #include "arm/motion_chain.hpp"
+#include "arrays/constants.hpp"
 
 namespace ikgen_runtime {
 
@@ -35,7 +37,7 @@ template <class Arm> struct PoseError {
 
   double largest() const noexcept {
     double worst = 0.0;
-    for (const double x : error) worst = std::abs(x) <= worst ? worst : std::abs(x);
+    for (const double x : error) worst = std::isfinite(x) ? std::max(worst, std::abs(x)) : kInfinity;
     return worst;
   }
 };
