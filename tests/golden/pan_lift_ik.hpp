@@ -460,6 +460,10 @@ template <int N, bool H> [[gnu::always_inline]] inline Sines<N> turned(const Sin
 }
 
 // --- small matrix --------------------------------------------------------------------------------
+inline double worse(double worst, double error) noexcept {
+  return std::isfinite(error) ? std::max(worst, std::abs(error)) : std::numeric_limits<double>::infinity();
+}
+
 template <class X> inline void cross(const X* a, const X* b, X* out) noexcept {
   out[0] = a[1] * b[2] - a[2] * b[1];
   out[1] = a[2] * b[0] - a[0] * b[2];
@@ -751,7 +755,7 @@ template <class Arm> struct PoseError {
 
   double largest() const noexcept {
     double worst = 0.0;
-    for (const double x : error) worst = std::isfinite(x) ? std::max(worst, std::abs(x)) : kInfinity;
+    for (const double x : error) worst = worse(worst, x);
     return worst;
   }
 };
@@ -3420,8 +3424,9 @@ template <class Arm, class Solver> struct PathStep {
   Status arrive(const double* row, const Eigen::Isometry3d& pose) noexcept {
     double placed[kDof];
     std::copy_n(row, kDof, placed);
-    if (farthest_out(row) >= 0) {
-      if (outside(row) > Arm::Policy::kLimitReach) return Status::Limits;
+    const double off = limits ? outside(row) : 0.0;
+    if (off > Arm::Policy::kLimitReach) return Status::Limits;
+    if (off > Arm::Policy::kLimitTolerance) {
       const typename Arm::Solutions inside = rows_of(pose, row, true);
       const double* nearest = inside.q.data()[0].data();
       if (inside.count == 0 || !(farthest(nearest, row) < kLeastOff)) return Status::Limits;
@@ -3476,13 +3481,6 @@ template <class Arm, class Solver> struct PathStep {
 
   static double clipped(const double* row, int j) noexcept {
     return std::min(std::max(row[j], Arm::kLower.data()[j]), Arm::kUpper.data()[j]);
-  }
-
-  int farthest_out(const double* row) const noexcept {
-    const double most = outside(row);
-    for (int j = 0; j < kDof && limits && most > Arm::Policy::kLimitTolerance; ++j)
-      if (!(excess(row, j) < most)) return j;
-    return -1;
   }
 
   static Eigen::Isometry3d between(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) noexcept {

@@ -16,7 +16,11 @@ import numpy as np
 
 from ikgen.model.arrays import Array
 from ikgen.runtime.python.elimination.hidden_angle import loop_pencil
-from ikgen.runtime.python.elimination.loop_equations import loop_constants, loop_equations
+from ikgen.runtime.python.elimination.loop_equations import (
+    loop_constants,
+    loop_equations,
+    loop_order,
+)
 
 __all__ = ["RESULTANTS", "Resultant", "root_shifts", "roots_shared"]
 
@@ -51,7 +55,7 @@ def roots_shared(rows: Sequence[Array]) -> Array:
     As both sides of an elbow they may have the two angles next to it in common too: then it is a simple
     root, of which one of them is found.
     """
-    hidden = [(start + (-2 if reverse else 2)) % 6 for start, reverse in RESULTANTS]
+    hidden = [loop_order(*plan)[2] for plan in RESULTANTS]
     shared = np.zeros((len(RESULTANTS), len(rows)), dtype=bool)
     for i, q in enumerate(rows):
         gap = np.abs(np.remainder(q[:, None] - q + np.pi, 2.0 * np.pi) - np.pi)

@@ -15,7 +15,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Protocol, cast
 
 from ikgen.errors import BadDescriptionError, IkgenError, PlugInError, UsageError
-from ikgen.importers.named_robots import find_robot, is_named, names_meant
+from ikgen.importers.named_robots import find_robot, is_named, name_asked
 from ikgen.plugins import PlugIn, blaming, named_object, plug_ins
 
 if TYPE_CHECKING:
@@ -131,19 +131,17 @@ def importer_of(path: Path) -> Importer:
             f"{path} is a folder", hint=f"name the robot's file in it: {path}/ROBOT.urdf"
         )
     if not path.exists():
-        raise BadDescriptionError("no such file", file=str(path), hint=_way_out(path))
+        raise BadDescriptionError(
+            "no such file",
+            file=str(path),
+            hint=name_asked(path) or "check the path; ikgen robots lists names",
+        )
     known = ", ".join(suffix for row in (*IMPORTERS, *others) for suffix in row.suffixes)
     raise UsageError(
         f"{path}: cannot tell the format of a robot description by the suffix '{path.suffix}'",
         hint=f"what is read has one of {known}; convert others, as SDF, to URDF"
         + (f"; {broken.message}" if broken else ""),
     )
-
-
-def _way_out(path: Path) -> str:
-    """What to do about a path without a suffix where nothing is: it may be a robot's name."""
-    meant = " or ".join(names_meant(path))
-    return f"a robot by name? {meant}" if meant else "check the path; ikgen robots lists names"
 
 
 def load_tree(

@@ -28,6 +28,7 @@ __all__ = [
     "find_robot",
     "is_lost",
     "is_named",
+    "name_asked",
     "names_meant",
     "robot_names",
 ]
@@ -91,6 +92,12 @@ def names_meant(robot: str | os.PathLike[str]) -> tuple[str, ...]:
             names = robot_names(package)
             found += [f"{package}:{one}" for one in names if one in (plain, f"{plain}_description")]
     return tuple(found)
+
+
+def name_asked(robot: str | os.PathLike[str]) -> str:
+    """A question after what may be meant, for a hint; "" where nothing is."""
+    meant = " or ".join(names_meant(robot))
+    return f"a robot by name? {meant}" if meant else ""
 
 
 def robot_names(source: str) -> tuple[str, ...]:

@@ -33,13 +33,14 @@ _BY_NAME = {
 """Options that are given once a name: the argument, and what parts the name from its value."""
 
 _FOLDERS = {"--package-path": "package_paths"}
+_NAMES = {**_TEXTS, **_FOLDERS, **{option: name for option, (name, _) in _BY_NAME.items()}}
 _FLAGS = {"--trust": "trust=True", "--no-verify": "verify=False"}
 
 PROSE = frozenset(("and", "for", "makes", "only", "out", "still", "with", "writes"))
 """Words behind an option that is named without a value."""
 
 _VALUE = r"(?!--)(?:'[^']*'|[^\s'`\",;:()]|:(?=\S))+"
-_WITH_VALUE = "|".join([*_TEXTS, *_BY_NAME, *_FOLDERS])
+_WITH_VALUE = "|".join(_NAMES)
 _PART = rf"(?:{_WITH_VALUE})(?![\w-])(?: (?!(?:{'|'.join(PROSE)})\b){_VALUE})?"
 _OPTION = rf"(?:{_PART}|(?:{'|'.join(_FLAGS)})(?![\w-]))"
 _RUN = re.compile(rf"(ikgen from-(?:urdf|dh) (?P<robot>{_VALUE}) ?)?{_OPTION}(?: {_OPTION})*")
@@ -49,7 +50,7 @@ _ONE = re.compile(rf"(--[\w-]+)(?: (?!--)({_VALUE}))?")
 
 def option_names() -> tuple[str, ...]:
     """The options that are an argument of `load`."""
-    return (*_TEXTS, *_BY_NAME, *_FOLDERS, *_FLAGS)
+    return (*_NAMES, *_FLAGS)
 
 
 def argument_words(text: str) -> str:
@@ -89,7 +90,7 @@ def _argument(option: str, values: Sequence[str], *, colon: bool) -> str:
     """One argument; its name alone where no value is said, without its sign where it begins a sentence."""
     if option in _FLAGS:
         return _FLAGS[option]
-    name = {**_TEXTS, **_FOLDERS, **{key: row[0] for key, row in _BY_NAME.items()}}[option]
+    name = _NAMES[option]
     if not values:
         return name if colon else f"{name}="
     if option in _TEXTS:

@@ -12,7 +12,7 @@ import numpy as np
 
 from ikgen.derivation.joint_value import parse_joint_value
 from ikgen.errors import ArgumentError, IkgenError, shown
-from ikgen.importers.named_robots import is_named, names_meant
+from ikgen.importers.named_robots import is_named, name_asked
 from ikgen.model.joint_relation import checked_relation
 from ikgen.model.module_name import checked_module_name
 from ikgen.records.request import Request, xacro_texts
@@ -173,12 +173,9 @@ def _existing(argument: str, path: Path) -> Path:
         there = False
     if there:
         return path
-    meant = names_meant(path) if argument == "robot" else ()
-    by_name = f"; a robot by name? {' or '.join(meant)}" if meant else ""
-    raise ArgumentError(
-        f"{argument}: there is no file '{path}'",
-        hint=f"paths are relative to {Path.cwd()}{by_name}",
-    )
+    asked = name_asked(path) if argument == "robot" else ""
+    hint = "; ".join(filter(None, (f"paths are relative to {Path.cwd()}", asked)))
+    raise ArgumentError(f"{argument}: there is no file '{path}'", hint=hint)
 
 
 def _folders(paths: object) -> tuple[Path, ...]:

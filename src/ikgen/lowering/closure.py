@@ -58,19 +58,16 @@ def _bounded(work: Placement, parts: list[Expr], limit: float, scale: float = 1.
     of Newton steps as well, unless others hold."""
     if not parts:
         return
-    g = work.g
-    limits = [limit, max(limit, _WIDER * CHECK_TOLERANCE) if work.loses_digits else limit]
-    here, wide = (
-        g.const((scale * limits[1]) ** 2),
-        [g.const((scale * _WIDER * x) ** 2) for x in limits],
-    )
-    most, total = here, g.dot(parts, parts)
-    wider = {either(g, dict.fromkeys((*work.singular, *work.close))): wide[0]}
-    if wide[0] is not wide[1]:
-        wider = {either(g, work.close): wide[1], either(g, work.singular): wide[0]}
-    for condition, bound in wider.items():
-        if condition is not None:
-            most = g.select(condition, bound, most)
+    g, total = work.g, work.g.dot(parts, parts)
+    least = max(limit, _WIDER * CHECK_TOLERANCE) if work.loses_digits else limit
+    wider = [(dict.fromkeys((*work.singular, *work.close)), limit)]
+    if least > limit:
+        wider = [(dict.fromkeys(work.close), least), (dict.fromkeys(work.singular), limit)]
+    most = g.const((scale * least) ** 2)
+    for flags, bound in wider:
+        some = either(g, flags)
+        if some is not None:
+            most = g.select(some, g.const((scale * _WIDER * bound) ** 2), most)
     work.require_solution(g.binary("gt", most, total))
     work.residuals.append(_counted(work, parts, total))
 

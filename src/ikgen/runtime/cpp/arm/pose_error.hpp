@@ -1,11 +1,8 @@
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-
 #include "arm/held_aim.hpp"
 #include "arm/motion_chain.hpp"
-#include "arrays/constants.hpp"
+#include "arrays/small_matrix.hpp"
 
 namespace ikgen_runtime {
 
@@ -37,7 +34,7 @@ template <class Arm> struct PoseError {
 
   double largest() const noexcept {
     double worst = 0.0;
-    for (const double x : error) worst = std::isfinite(x) ? std::max(worst, std::abs(x)) : kInfinity;
+    for (const double x : error) worst = worse(worst, x);
     return worst;
   }
 };

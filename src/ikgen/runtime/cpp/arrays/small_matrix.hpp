@@ -4,8 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace ikgen_runtime {
+
+// The larger of two errors' sizes; what is no number is as large as can be.
+inline double worse(double worst, double error) noexcept {
+  return std::isfinite(error) ? std::max(worst, std::abs(error)) : std::numeric_limits<double>::infinity();
+}
 
 // X: double, or lanes.
 template <class X> inline void cross(const X* a, const X* b, X* out) noexcept {

@@ -74,7 +74,6 @@ using Vector = std::array<double, 6>;
 struct State {
   double error[6], slope[6][6] = {}, worst = 0.0;
   double largest() const noexcept { return worst; }
-  void add(double entry) noexcept { worst = std::isfinite(entry) ? std::max(worst, std::abs(entry)) : kInfinity; }
 };
 
 // A joint that moves an axis of a chain, and the axis' value by the joint's: ratio times it, and shift.
@@ -104,10 +103,10 @@ inline State residual(const Frames& F, const Frame& T, const double* q, const Tu
   for (Index i = 0; i < 3; ++i) {
     for (Index j = 0; j < 3; ++j) {
       for (Index k = 0; k < 3; ++k) S(i, j) += T.R[i][k] * X.R[j][k];
-      out.add(T.R[i][j] - X.R[i][j]);
+      out.worst = worse(out.worst, T.R[i][j] - X.R[i][j]);
     }
     out.error[i] = T.p[i] - X.p[i];
-    out.add(out.error[i]);
+    out.worst = worse(out.worst, out.error[i]);
   }
   for (Index k = 0; k < 3; ++k) {
     const Index m = (k + 1) % 3, n = (k + 2) % 3;

@@ -124,8 +124,9 @@ template <class Arm, class Solver> struct PathStep {
   Status arrive(const double* row, const Eigen::Isometry3d& pose) noexcept {
     double placed[kDof];
     std::copy_n(row, kDof, placed);
-    if (farthest_out(row) >= 0) {
-      if (outside(row) > Arm::Policy::kLimitReach) return Status::Limits;
+    const double off = limits ? outside(row) : 0.0;
+    if (off > Arm::Policy::kLimitReach) return Status::Limits;
+    if (off > Arm::Policy::kLimitTolerance) {
       const typename Arm::Solutions inside = rows_of(pose, row, true);
       const double* nearest = inside.q.data()[0].data();
       if (inside.count == 0 || !(farthest(nearest, row) < kLeastOff)) return Status::Limits;

@@ -26,6 +26,7 @@ __all__ = [
     "loop_action",
     "loop_constants",
     "loop_equations",
+    "loop_order",
     "of_constants",
 ]
 
@@ -42,12 +43,15 @@ def loop_constants(
 ) -> tuple[list[int], list[Array]]:
     """The loop of seven frames F (1 or N, 4, 4) and poses T (N, 4, 4) begun at joint `start`, reversed with
     negated angles: the order of the joints, and C (1 or N, 4, 4) each."""
-    C = [*F[1:6], F[6] @ inverses(T) @ F[0]]
+    C, order = [*F[1:6], F[6] @ inverses(T) @ F[0]], loop_order(start, reverse)
     if not reverse:
-        order = [(start + i) % 6 for i in range(6)]
         return order, [C[i] for i in order]
-    order = [(start - i) % 6 for i in range(6)]
     return order, [of_constants(inverses, C[(i - 1) % 6]) for i in order]
+
+
+def loop_order(start: int, reverse: int) -> list[int]:
+    """The order of the joints in a loop begun at joint `start`, reversed or not."""
+    return [(start - i if reverse else start + i) % 6 for i in range(6)]
 
 
 def joint_values(values: Array, order: list[int], reverse: int = 0) -> Array:

@@ -55,18 +55,17 @@ def tracked(joint: HeldJoint, T: Array, low: float, high: float, limits: bool) -
     left = _FINE * arm.most
     while True:
         following = linked_rows(arm, rows.q, rows.real, joint.guarded)
-        held = rows.held
-        middle = 0.5 * (held[1:] + held[:-1])
+        held, halved = rows.held, np.zeros(len(following), dtype=bool)
         if not fixed:
-            doubtful = _doubtful(joint, rows, following, limits)
-            fine = doubtful & (np.diff(held) <= _NARROW * (high - low))
+            halved = _doubtful(joint, rows, following, limits)
+            fine = halved & (np.diff(held) <= _NARROW * (high - low))
             left -= int(fine.sum())
-            middle = middle[doubtful & (~fine | (left >= 0))]
-        if fixed or not len(middle):
+            halved &= ~fine | (left >= 0)
+        if not halved.any():
             off = outside(arm, rows.q, limits) - arm.policy.limit_tolerance
             least = (_LEAST if left >= 0 else _NARROW) * (high - low)
             return Tracks(rows, following, off, rows.real & (off <= 0.0), least)
-        rows = merged_rows(rows, rows_at(joint, T, middle))
+        rows = merged_rows(rows, rows_at(joint, T, 0.5 * (held[1:] + held[:-1])[halved]))
 
 
 def _doubtful(joint: HeldJoint, rows: Rows, following: Index, limits: bool) -> Flags:
