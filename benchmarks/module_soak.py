@@ -42,7 +42,8 @@ SHOWN = 5
 
 def soak_module(made: Emitted, poses: int, near: int, *, seed: int = 1) -> Soak:
     """Random poses, and poses beside singularities: half of them around configurations found by descending
-    on the smallest singular value, half with some joints beside multiples of 90 degrees."""
+    on the smallest singular value, half with some joints beside multiples of 90 degrees. Every other one of
+    them is solved without limits."""
     assert made.module is not None
     runner = PythonModule(made.module)
     arm = _arm_of(made, runner)
@@ -50,9 +51,11 @@ def soak_module(made: Emitted, poses: int, near: int, *, seed: int = 1) -> Soak:
     counts = np.zeros((DECADES, 2, 3), dtype=int)
     rows = wrong = 0
     cases: list[str] = []
-    for kind, q in enumerate((arm.uniform(rng, poses), _beside(arm, near, rng))):
+    beside = _beside(arm, near, rng)
+    asked = (0, True, arm.uniform(rng, poses)), (1, True, beside[::2]), (1, False, beside[1::2])
+    for kind, limits, q in asked:
         for start in range(0, len(q), CHUNK):
-            part = _put(arm, runner, q[start : start + CHUNK])
+            part = _put(arm, runner, q[start : start + CHUNK], limits)
             rows, wrong = rows + part.rows, wrong + part.wrong
             counts[:, kind] += np.array(part.decades)[:, :3]
             cases += part.cases
@@ -94,21 +97,21 @@ def _distances(rng: np.random.Generator, count: int) -> Array:
     return np.asarray(10.0 ** -rng.uniform(1.0, 12.0, size=(count, 1)))
 
 
-def _put(arm: ArmUnderTest, runner: PythonModule, q: Array) -> Soak:
-    """Some poses: what came of them."""
+def _put(arm: ArmUnderTest, runner: PythonModule, q: Array, limits: bool) -> Soak:
+    """Some poses, solved with limits or without: what came of them."""
     T = arm.oracle.forward(q).reshape(-1, 4, 4)
     sample = SampleSet("soak", q, T, arm.sigma(q))
-    batch = runner.solve_batch(T, free=arm.held_values(q, T))
+    batch = runner.solve_batch(T, limits=limits, free=arm.held_values(q, T))
     assert batch is not None
-    missed = survey(arm, runner, [Trial(sample, batch, limits=True, seeded=False)]).missed
+    missed = survey(arm, runner, [Trial(sample, batch, limits=limits, seeded=False)]).missed
     again = np.flatnonzero(missed | (np.arange(len(q)) % EACH == 0))
     some = SampleSet("soak", q[again], T[again], sample.sigma[again])
-    alone = runner.solve_many(some.poses, free=arm.held_values(some.q, some.poses))
+    alone = runner.solve_many(some.poses, free=arm.held_values(some.q, some.poses), limits=limits)
     flagged = np.zeros_like(batch.singular)
     flagged[again] = alone.singular.any(axis=1)[:, None]
     part = Rows(batch.q[again], batch.count[again], ("OK",) * len(again), flagged[again])
     twice = survey(
-        arm, runner, [Trial(some, rows, limits=True, seeded=False) for rows in (part, alone)]
+        arm, runner, [Trial(some, rows, limits=limits, seeded=False) for rows in (part, alone)]
     )
     n = len(again)
     lost, empty = np.zeros((2, len(q)), dtype=bool)

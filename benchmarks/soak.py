@@ -6,12 +6,13 @@
 ARM is the name of an arm of the collection, or a URDF file or DH table (`--option` hands options to ikgen);
 without any, ten of the collection: exact, rounded, off by small offsets, elimination, redundant.
 Random poses, and poses 10^-1 to 10^-12 beside singular configurations, of which a quarter have joints at
-multiples of 45 degrees and another one joint there and the others anywhere, joints inside their limits (a
-module takes thousands where a header takes millions: see `benchmarks.module_soak`). Prints, by decade of
-the smallest singular value of the configuration that made the pose: how many poses, at how many that
-configuration is missed among the rows, how many got no row at all. How close a row must come is what
-`ikgen.verify.completeness` says. Exits with 1 if a row is wrong, or anything is missed or unanswered at
-singular values from `--above` on. `--record` keeps what was found of headers.
+multiples of 45 degrees and another one joint there and the others anywhere, joints inside their limits. Of
+the latter poses half are solved without limits. A module takes thousands where a header takes millions (see
+`benchmarks.module_soak`). Prints, by decade of the smallest singular value of the configuration that made
+the pose: how many poses, at how many that configuration is missed among the rows, how many got no row at
+all. How close a row must come is what `ikgen.verify.completeness` says. Exits with 1 if a row is wrong, or
+anything is missed or unanswered at singular values from `--above` on. `--record` keeps what was found of
+headers.
 """
 
 from __future__ import annotations

@@ -6,7 +6,7 @@
 // Arguments: random poses, poses beside singularities, seed. Of those half are drawn by descending on the smallest
 // singular value, a quarter have joints at multiples of 45 degrees, all but the first of ten 10^-1 to 10^-12 (rad, m)
 // off in a random direction, or in one joint; and a quarter have one joint there, or as far off, and the others drawn
-// anew for every pose. Prints the rows that were returned and those
+// anew for every pose. Every other forty of them are solved without limits. Prints the rows that were returned and those
 // that are wrong; then for each decade of the smallest singular value: random poses, missed, unanswered, and the same
 // three of the poses beside singularities; then configurations that failed, one a line: kind, singular value, joints.
 
@@ -223,9 +223,10 @@ bool contains(const Arm& arm, const ik::Solutions& found, const ik::Joints& q, c
   return best <= kFound || best <= allowed(arm, q, closure(arm, found.q[which], pose));
 }
 
-void put(const Arm& arm, Tally& tally, bool near, const ik::Joints& q) {
+void put(const Arm& arm, Tally& tally, bool near, bool limits, const ik::Joints& q) {
   const Eigen::Isometry3d pose = ik::forward(q);
   ik::Options options;
+  options.limits = limits;
 #if IKGEN_FREE
   for (std::size_t k = 0; k < ik::kFreeJoints.size(); ++k) options.free[k] = q[ik::kFreeJoints[k]];
 #endif
@@ -297,7 +298,7 @@ int main(int argc, char** argv) {
   std::mt19937_64 random(static_cast<unsigned long>(std::atol(argv[3])));
   const Arm arm = the_arm();
   Tally tally;
-  for (long n = 0; n < poses; ++n) put(arm, tally, false, draw(arm, random));
+  for (long n = 0; n < poses; ++n) put(arm, tally, false, true, draw(arm, random));
   ik::Joints singular;
   bool known = false;
   for (long n = 0, tries = 0; n < near; ++n) {
@@ -311,7 +312,8 @@ int main(int argc, char** argv) {
     }
     if (!even && !known) singular = even_turns(arm, random);  // an arm without singularities
     const bool one = n / kBeside % 4 == 3;
-    put(arm, tally, true, one ? even_turn(arm, n % 2 == 0, random) : even && first ? singular : beside(arm, singular, even && n % 2 == 0, random));
+    const bool limits = n / (4 * kBeside) % 2 == 0;
+    put(arm, tally, true, limits, one ? even_turn(arm, n % 2 == 0, random) : even && first ? singular : beside(arm, singular, even && n % 2 == 0, random));
   }
   std::printf("rows %ld %ld\n", tally.rows, tally.wrong);
   for (int k = 0; k < kDecades; ++k) {

@@ -339,5 +339,13 @@ def test_degrees_and_millimetres_are_told(tmp_path: Path) -> None:
     path.write_text(f'convention = "modified"\n{table}'.replace("431.8", "43.18"))
     found = [str(one) for one in read_dh_table(path)[0].warnings]
     assert any("lengths up to 43.18 m look like mm or cm" in one for one in found)
+    path.write_text(
+        f'convention = "modified"\n{table}'.replace("431.8", "4e-4").replace("20.3", "0")
+    )
+    found = [str(one) for one in read_dh_table(path)[0].warnings]
+    assert any(
+        "lengths add up to 0.4 mm: kept as they are, but are they in m?" in one for one in found
+    )
     path.write_text(f'convention = "modified"\n{table}'.replace("431.8", "0.4").replace("-90", "1"))
+    assert not any("lengths" in str(one) for one in read_dh_table(path)[0].warnings)
     assert not any("look" in str(one) for one in read_dh_table(path)[0].warnings)

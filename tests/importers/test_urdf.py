@@ -263,6 +263,10 @@ BENT = {
         ),
         "joints lie up to 450 m apart: lengths look like mm or cm: kept as they are",
     ),
+    "kilometres": (
+        robot(joint('<origin xyz="0 0 3e-4"/>' + LIMIT)),
+        "lengths add up to 0.3 mm: kept as they are, but are they in m?",
+    ),
     "axis": (robot(joint('<axis xyz="1 0 0.5"/>' + LIMIT)), "axis of length 1.11803 normalised"),
     "twice": (
         robot(joint('<axis xyz="0 1 0"/><axis xyz="0 1 0"/>' + LIMIT)),
@@ -280,6 +284,12 @@ BENT = {
 def test_one_far_joint_is_no_sign_of_millimetres(read):
     text = robot(joint('<origin xyz="0 0 317"/>' + LIMIT))
     assert read(text).source.warnings == ()
+
+
+@pytest.mark.parametrize("type_", ["revolute", "prismatic"])
+def test_a_slide_of_some_way_is_no_sign_of_kilometres(read, type_):
+    text = robot(joint('<origin xyz="0 0 3e-4"/>' + LIMIT, type_=type_))
+    assert bool(read(text).source.warnings) == (type_ == "revolute")
 
 
 @pytest.mark.parametrize("turned", [16.7, 16.7551608, 12.5, 31.4159])

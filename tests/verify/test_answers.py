@@ -58,13 +58,15 @@ def test_each_set_is_asked_as_its_checks_need() -> None:
     assert (found.unlimited.limits, found.unlimited.seeded) == (False, False)
     assert [(t.limits, t.seeded) for t in found.inside] == [(True, False)] * 2
     assert [(t.limits, t.seeded) for t in found.outside] == [(True, False), (False, False)]
-    assert [(t.limits, t.seeded) for t in found.seeded] == [(True, True)] * 4
+    limits = {t.sample.label: t.limits for t in found.seeded}
+    assert limits == {"singular": True, "special": True, "near singular": False, "boundary": False}
+    assert all(t.seeded for t in found.seeded)
     assert (found.ordered.limits, found.ordered.seeded, len(found.seeds)) == (True, True, 40)
     assert [(t.limits, t.seeded) for t in found.repeated] == [(True, False)] * 2
     assert [len(t.rows) for t in found.repeated] == [20, 20] and len(found.searched.rows) == 16
     assert [(t.limits, t.seeded, len(t.rows)) for t in found.unreachable] == [(True, False, 12)] * 2
     asked = {(seeded, limits) for _, _, seeded, limits in runner.calls}
-    assert asked == {(False, True), (False, False), (True, True)}
+    assert asked == {(False, True), (False, False), (True, True), (True, False)}
     assert runner.calls.count((20, False, False, True)) == 2  # the same, and both are asked
     assert runner.batches == [(40, False)] and not any(free for _, free, *_ in runner.calls)
     assert len(found.reachable) == 11 and len(found.standing) == 9

@@ -18,7 +18,8 @@ __all__ = ["Answers", "collect_answers"]
 
 
 _INSIDE_SETS = ("at limits", "special")
-_SINGULAR_SETS = ("singular", "near singular", "boundary", "special")
+_SINGULAR_SETS = ("singular", "special")
+_BESIDE_SETS = ("near singular", "boundary")
 _ORDERED = 100  # poses solved again with a random seed
 _REPEATED = 20
 _SEARCHED = 16  # poses that are searched numerically
@@ -30,7 +31,8 @@ class Answers:
     """`limited`, `unlimited`: the random poses with limits by `solve`, and without by `solve_batch` where
     there is one, unseeded; `inside`: further
     sets with configurations inside the limits, unseeded; `outside`: a (with, without) limits pair
-    of configurations outside; `seeded`: singular sets, seeded with the generating configuration;
+    of configurations outside; `seeded`: singular sets with limits, and what is beside them without, as
+    there rows may come that limits mostly hide, seeded with the generating configuration;
     `ordered`: random poses with random `seeds`; `searched`: a slice of `unlimited`; `unreachable`:
     poses without solution; `repeated`: a few of `limited` twice again."""
 
@@ -108,7 +110,8 @@ def collect_answers(
     seeds = arm.uniform(generator(seed, "seeds"), len(some))
     plain = [sets[label] for label in ("random", *_INSIDE_SETS, "outside limits")]
     asked = {
-        "seeded": Question([sets[label] for label in _SINGULAR_SETS], True, seeded=True),
+        "singular": Question([sets[label] for label in _SINGULAR_SETS], True, seeded=True),
+        "beside": Question([sets[label] for label in _BESIDE_SETS], False, seeded=True),
         "plain": Question(plain, True),
         "outside": Question(plain[-1:], False),
         "ordered": Question([some], True, seeded=True, seeds=seeds),
@@ -124,7 +127,7 @@ def collect_answers(
         unlimited=unlimited,
         inside=tuple(inside),
         outside=(outside, found["outside"][0]),
-        seeded=found["seeded"],
+        seeded=(*found["singular"], *found["beside"]),
         ordered=found["ordered"][0],
         seeds=seeds,
         searched=_slice(unlimited, _SEARCHED),

@@ -7,14 +7,15 @@ from collections.abc import Sequence
 from ikgen.importers.dh.table_document import TableDocument
 from ikgen.importers.dh.table_entries import Entry
 from ikgen.importers.urdf.joint_limits import DEGREES_ABOVE
-from ikgen.importers.urdf.millimetres import longer_than_arms
+from ikgen.importers.urdf.millimetres import longer_than_arms, shorter_than_arms
+from ikgen.model.chain import PRISMATIC
 
 __all__ = ["note_units"]
 
 
 def note_units(document: TableDocument, entries: Sequence[Entry]) -> None:
-    """Warns of angles beyond two turns, and of lengths that those of no arm add up to. They are kept as
-    they are."""
+    """Warns of angles beyond two turns, and of lengths that add up to more or less than those of any arm.
+    They are kept as they are."""
     for i, entry in enumerate(entries, start=1):
         for key in ("alpha", "theta"):
             angle = getattr(entry, key)
@@ -25,3 +26,7 @@ def note_units(document: TableDocument, entries: Sequence[Entry]) -> None:
     lengths = [abs(x.value) for x in given]
     if longer_than_arms(lengths):
         document.warn(f"lengths up to {max(lengths):g} m look like mm or cm: kept as they are")
+    travels = [e.limits.upper - e.limits.lower for e in entries if e.kind == PRISMATIC]
+    known = len(lengths) == 2 * len(entries) and not {"base", "tool"} & document.data.keys()
+    if known and (words := shorter_than_arms([*lengths, *travels])):
+        document.warn(words)

@@ -1,4 +1,4 @@
-"""Lengths of a description that look like mm or cm: all of them, or those of a few joints."""
+"""Lengths of a description that are hardly in m: all of them, or those of a few joints."""
 
 from __future__ import annotations
 
@@ -7,13 +7,16 @@ from collections.abc import Sequence
 import numpy as np
 
 from ikgen.importers.xml_document import Place
-from ikgen.model.joint_tree import Joint
+from ikgen.model.joint_tree import Joint, JointType
 
-__all__ = ["longer_than_arms", "note_millimetres"]
+__all__ = ["longer_than_arms", "note_millimetres", "shorter_than_arms"]
 
 _FARTHEST = 20.0
 """Most (m) from a moving joint to the one before, along an axis: longer than the booms of robots. No arm's
 links but the longest, a mast or a rail, add up to more."""
+
+_NEAREST = 5e-3
+"""Links (m) of no arm add up to less. Rows are right to 1e-9 m, which is no small part of shorter ones."""
 
 _TIMES = 30.0
 """So many times as far as all others no joint of a robot lies: a mast, say, that carries a small arm."""
@@ -36,11 +39,24 @@ def note_millimetres(joints: Sequence[Joint], place: Place) -> None:
         longest = max(map(_length, moving))
         text = f"joints lie up to {longest:g} m apart: lengths look like mm or cm: kept as they are"
         place.warn(None, text)
+    if words := shorter_than_arms([_length(joint) + _travel(joint) for joint in joints]):
+        place.warn(None, words)
 
 
 def longer_than_arms(lengths: Sequence[float]) -> bool:
     """Whether links of these lengths (m) in a row are longer than those of any arm."""
     return sum(lengths) - max(lengths, default=0.0) > _FARTHEST
+
+
+def shorter_than_arms(lengths: Sequence[float]) -> str:
+    """What to tell where links and slides (m) are shorter than those of any arm; else ""."""
+    total = sum(lengths)
+    if not 0.0 < total < _NEAREST:
+        return ""
+    return (
+        f"lengths add up to {1e3 * total:g} mm: kept as they are, but are they in m? "
+        "Rows are right to 1e-6 mm, which may be too little for so small an arm"
+    )
 
 
 def _longer_than_arms(joints: Sequence[Joint]) -> bool:
@@ -70,6 +86,12 @@ def _by_parent(joints: Sequence[Joint]) -> dict[str, list[Joint]]:
 def _length(joint: Joint) -> float:
     """The largest coordinate (m) of a joint in its parent's frame."""
     return max(abs(float(x)) for x in joint.T_parent_child[:3, 3])
+
+
+def _travel(joint: Joint) -> float:
+    """How far (m) a slide goes."""
+    slides = joint.type is JointType.PRISMATIC
+    return joint.limits.upper - joint.limits.lower if slides else 0.0
 
 
 def _carried(moving: Sequence[Joint], joints: Sequence[Joint]) -> Sequence[Joint]:
