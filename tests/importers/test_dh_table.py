@@ -177,7 +177,7 @@ def test_locked_joints_become_constants(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("limits", "words"),
     [
-        ("[-2, 1e9]", "taken as unlimited"),
+        ("[-2, 1e9]", "upper limit 1e+09 rad stands for none: taken as 12.5664"),
         ("[-170, 170]", "look like degrees"),
         ("[-1e9, 1e9]", ""),
     ],
@@ -187,7 +187,8 @@ def test_limits_that_are_hardly_meant(tmp_path: Path, limits: str, words: str) -
     path.write_text(table(GOOD, tail=f"limits = {limits}"))
     source, dh = read_dh_table(path)
     assert " ".join(source.warnings).endswith(words + ": kept as they are" * ("degrees" in words))
-    assert math.isinf(dh.joints[-1].limits.upper) == ("degrees" not in words)
+    upper = dh.joints[-1].limits.upper
+    assert upper == (math.inf if not words else 170.0 if "degrees" in words else 4.0 * math.pi)
 
 
 def test_standard_fixture_with_limits_and_tool() -> None:

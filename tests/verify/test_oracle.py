@@ -10,6 +10,7 @@ import pytest
 from tests.support.fake_arms import JOINTS, six_axis_oracle, six_axis_urdf, tree_of
 
 from ikgen.errors import BadDescriptionError, UnknownNameError
+from ikgen.importers.urdf.joint_limits import turning_limits
 from ikgen.kinematics.forward import row_constant
 from ikgen.model.chain import PRISMATIC, REVOLUTE, ActuatedJoint
 from ikgen.model.dh import Angle, DHChain, DHRow, Length
@@ -136,6 +137,26 @@ def test_limits_that_stand_for_none() -> None:
     oracle = PinocchioOracle(tree_of(text), "l0", "tip", JOINTS)
     assert (oracle.lower[0], oracle.upper[0]) == (-math.inf, math.inf)
     assert (oracle.lower[1], oracle.upper[1]) == (-2.0, 2.0)
+
+
+@pytest.mark.parametrize(
+    ("stated", "taken"),
+    [
+        ((-2.9, 999999), (-2.9, 4.0 * math.pi)),
+        ((-1e9, 0.3), (-4.0 * math.pi, 0.3)),
+        ((0.2, 1e16), (0.2, 0.2 + 4.0 * math.pi)),
+        ((-1e9, -2.0), (-2.0 - 4.0 * math.pi, -2.0)),
+    ],
+)
+def test_a_limit_that_stands_for_none_leaves_the_other(
+    stated: tuple[float, float], taken: tuple[float, float]
+) -> None:
+    limits = f'lower="{stated[0]}" upper="{stated[1]}"'
+    text = six_axis_urdf().replace('lower="-2.9" upper="2.9"', limits)
+    oracle = PinocchioOracle(tree_of(text), "l0", "tip", JOINTS)
+    assert (oracle.lower[0], oracle.upper[0]) == taken
+    read, _ = turning_limits(*stated)
+    assert (read.lower, read.upper) == taken
 
 
 def test_unknown_names_and_broken_text() -> None:

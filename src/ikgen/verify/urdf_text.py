@@ -26,7 +26,8 @@ JOINT_PREFIX = "joint:"
 _KINEMATIC = ("origin", "parent", "child", "axis")
 _LIMITED = ("revolute", "prismatic")
 _UNLIMITED = 1e3
-"""Limits (rad) that are farther apart than this stand for none."""
+"""A limit (rad) as far as this stands for none: where the other does not, it is taken as two turns from
+that, or from 0."""
 
 _COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 
@@ -57,8 +58,12 @@ def _range(joint: ET.Element) -> tuple[float, float]:
         return -math.inf, math.inf
     limit = joint.find("limit")
     lower, upper = _number(limit, "lower", 0.0), _number(limit, "upper", 0.0)
-    if joint.get("type") == "revolute" and upper - lower > _UNLIMITED:
-        return -math.inf, math.inf
+    if joint.get("type") == "revolute" and upper - lower > 2.0 * _UNLIMITED:
+        low, high = lower <= -_UNLIMITED, upper >= _UNLIMITED
+        if low and high:
+            return -math.inf, math.inf
+        lower = min(upper, 0.0) - 4.0 * math.pi if low else lower
+        upper = max(lower, 0.0) + 4.0 * math.pi if high else upper
     return (lower, upper) if lower < upper else (math.nan, math.nan)
 
 

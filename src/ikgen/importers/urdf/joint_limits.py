@@ -21,13 +21,16 @@ _TURNS = 16.0 * math.pi
 _ROUND = 0.5
 """What limits in degrees are multiples of, and those of such wrists in rad hardly are."""
 
-_NO_LIMIT_FROM = 1e3
-"""A range (rad) that stands for none: files write 999999, and 159 turns reach every angle."""
+_NO_LIMIT = 1e3
+"""A limit (rad) from which on it stands for none: files write 999999, and 159 turns reach every angle."""
 
 PINNED = "it cannot move, so it is locked there unless it is held (--free) or coupled"
 """What becomes of a joint whose limits leave one value."""
 
 _TURN = 2.0 * math.pi
+_FREELY = 2.0 * _TURN
+"""How far (rad) a joint turns beyond the limit that it has where the other stands for none."""
+
 FARTHEST = 1e6
 """Neighbouring doubles are 1e-10 apart here: no joint value beyond this (rad or m) is exact."""
 
@@ -39,7 +42,7 @@ def joint_limits(
 
     URDF's default of an absent bound is 0, which cannot be meant where both are absent or 0: such
     a joint has no limits. URDF gives a continuous joint none, whatever its file states, and a revolute
-    one that may turn more than 159 times has none that matter. Raises `BadValueError` for a range that
+    one that may turn 159 times to either side has none that matter. Raises `BadValueError` for a range that
     begins beyond all values which can be told apart.
     """
     if not type_.moves_on_one_axis or type_ is JointType.CONTINUOUS:
@@ -73,14 +76,24 @@ def joint_limits(
 
 def turning_limits(low: float, high: float) -> tuple[Limits, tuple[Oddity, ...]]:
     """The range of a revolute joint (rad) whose limits are stated so, and what was odd about it."""
-    if high - low > _NO_LIMIT_FROM:
-        known = min(-low, high) >= _NO_LIMIT_FROM
-        note = f"limits {low:g} to {high:g} rad: taken as unlimited"
-        return UNLIMITED, () if known else (Oddity(note),)
+    if low <= -_NO_LIMIT and high >= _NO_LIMIT:
+        return UNLIMITED, ()
+    if high - low > 2.0 * _NO_LIMIT:
+        return _one_sided(low, high)
     if _like_degrees(low, high):
         note = f"limits {low:g} to {high:g} rad look like degrees: kept as they are"
         return Limits(low, high), (Oddity(note),)
     return Limits(low, high), ()
+
+
+def _one_sided(low: float, high: float) -> tuple[Limits, tuple[Oddity, ...]]:
+    """The range where one limit is so far away that it stands for none: two turns from the other, or 0, in
+    which every angle lies."""
+    above = high > -low
+    kept = Limits(low, max(low, 0.0) + _FREELY) if above else Limits(min(high, 0.0) - _FREELY, high)
+    far, end = ("upper", kept.upper) if above else ("lower", kept.lower)
+    words = f"{far} limit {high if above else low:g} rad stands for none: taken as {end:g}"
+    return kept, (Oddity(words),)
 
 
 def _like_degrees(low: float, high: float) -> bool:
