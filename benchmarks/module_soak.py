@@ -21,7 +21,7 @@ from ikgen.generation.emitted_checks import oracle_for
 from ikgen.records.request import Request
 from ikgen.tasks import find_task
 from ikgen.verify.arm import ArmUnderTest, arm_under_test
-from ikgen.verify.checks import CLOSURE_TOLERANCE, PUT_ON_LIMIT
+from ikgen.verify.checks import CLOSURE_TOLERANCE
 from ikgen.verify.completeness import survey
 from ikgen.verify.runners.python_module import PythonModule
 from ikgen.verify.runners.runner import Rows
@@ -141,8 +141,7 @@ def _wrong(arm: ArmUnderTest, rows: Rows, poses: Array) -> int:
         return 0
     position, rotation = arm.task.errors(arm.oracle.forward(q), poses[index])
     error = np.maximum(position / arm.size_of(q), rotation)
-    on_limit = ((q == arm.lower) | (q == arm.upper)).any(axis=1)
-    return int((~(error <= CLOSURE_TOLERANCE + PUT_ON_LIMIT * on_limit)).sum())
+    return int((~(error <= CLOSURE_TOLERANCE)).sum())
 
 
 def _decades(sigma: Array) -> NDArray[np.int64]:

@@ -6,7 +6,8 @@
 // Arguments: random poses, poses beside singularities, seed. Of those half are drawn by descending on the smallest
 // singular value, a quarter have joints at multiples of 45 degrees, all but the first of ten 10^-1 to 10^-12 (rad, m)
 // off in a random direction, or in one joint; and a quarter have one joint there, or as far off, and the others drawn
-// anew for every pose. Every other forty of them are solved without limits. Prints the rows that were returned and those
+// anew for every pose. Every other forty of them are solved without limits, and one of seven
+// has a joint on a limit. Prints the rows that were returned and those
 // that are wrong; then for each decade of the smallest singular value: random poses, missed, unanswered, and the same
 // three of the poses beside singularities; then configurations that failed, one a line: kind, singular value, joints.
 
@@ -27,7 +28,8 @@ namespace {
 constexpr int kDecades = 14;           // the last holds all below
 constexpr int kShown = 5;              // failures printed, of each kind
 constexpr int kBeside = 10;            // poses beside each singular configuration
-constexpr double kRight = 2e-9;        // closure: a row that was put on a limit may be off by twice 1e-9
+constexpr int kOnLimits = 7;           // one pose beside singularities of so many has a joint on a limit
+constexpr double kRight = 1e-9;        // closure
 constexpr double kFound = 1e-6;        // as ikgen.verify.completeness, which says why
 constexpr double kNoise = 1e-13, kFarthest = 1e-2, kAlone = 1e-3;
 constexpr int kRows = 3 * SOAK_POSITION + (SOAK_TURN == 0 ? 0 : SOAK_TURN % 2 == 0 ? 1 : 3);
@@ -290,6 +292,12 @@ ik::Joints beside(const Arm& arm, const ik::Joints& singular, bool one, std::mt1
   return q;
 }
 
+// One joint on one of its limits.
+void to_limit(const Arm& arm, ik::Joints& q, std::mt19937_64& random) {
+  const int j = std::uniform_int_distribution<int>(0, ik::kDof - 1)(random);
+  q[j] = std::uniform_int_distribution<int>(0, 1)(random) ? arm.low[j] : arm.high[j];
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -313,7 +321,9 @@ int main(int argc, char** argv) {
     if (!even && !known) singular = even_turns(arm, random);  // an arm without singularities
     const bool one = n / kBeside % 4 == 3;
     const bool limits = n / (4 * kBeside) % 2 == 0;
-    put(arm, tally, true, limits, one ? even_turn(arm, n % 2 == 0, random) : even && first ? singular : beside(arm, singular, even && n % 2 == 0, random));
+    ik::Joints q = one ? even_turn(arm, n % 2 == 0, random) : even && first ? singular : beside(arm, singular, even && n % 2 == 0, random);
+    if (n % kOnLimits == 1) to_limit(arm, q, random);
+    put(arm, tally, true, limits, q);
   }
   std::printf("rows %ld %ld\n", tally.rows, tally.wrong);
   for (int k = 0; k < kDecades; ++k) {

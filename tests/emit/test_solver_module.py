@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from tests.support.module_facts import module_around
 
@@ -24,7 +25,7 @@ from ikgen.program.policy import SolvePolicy
 def test_rows_of_rounded_files_are_refined(
     deviation: float, plan: object, rounded: bool, rough: bool, far: bool
 ) -> None:
-    dh = SimpleNamespace(deviation=(0.0, deviation), most_driven=1.0, held=())
+    dh = chain_facts(deviation=(0.0, deviation))
     module = module_around(None, dh, plan=plan)
     policy = SolvePolicy()
     assert (module.rounded, module.tells_rough, module.far) == (rounded, rough, far)
@@ -35,7 +36,27 @@ def test_rows_of_rounded_files_are_refined(
     assert module.policy.limit_tolerance == policy.limit_tolerance
 
 
-def test_a_joint_that_moves_the_tool_several_times_as_far_is_put_on_limits_from_less_far() -> None:
-    dh = SimpleNamespace(deviation=(0.0, 0.0), most_driven=4.0, held=())
-    module = module_around(None, dh)
-    assert module.policy.limit_tolerance == SolvePolicy().limit_tolerance / 4.0
+def chain_facts(
+    *, deviation: tuple[float, float] = (0.0, 0.0), most_driven: float = 1.0, reach: float = 0.5
+) -> SimpleNamespace:
+    """What policies need to know of an arm whose links are `reach` m apart."""
+    frame = np.eye(4)
+    frame[0, 3] = reach
+    joints = [SimpleNamespace(kind="revolute", limits=SimpleNamespace(lower=-1.0, upper=1.0))]
+    return SimpleNamespace(
+        deviation=deviation, most_driven=most_driven, held=(), symbols=(), dof=1, rows=(),
+        file_frames=(frame,), joints=joints,
+    )  # fmt: skip
+
+
+def test_what_moves_the_tool_farther_is_put_on_limits_from_less_far() -> None:
+    plain = SolvePolicy().limit_tolerance
+    assert module_around(None, chain_facts(most_driven=4.0)).policy.limit_tolerance == plain / 4.0
+
+
+def test_joints_of_large_arms_are_put_on_limits_from_less_far(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("ikgen.emit.solver_module.position_unit", lambda dh: 2.5)
+    plain = SolvePolicy().limit_tolerance
+    assert module_around(None, chain_facts()).policy.limit_tolerance == plain / 2.5

@@ -3604,7 +3604,7 @@ inline void order_rows(const Eigen::Isometry3d& pose, const typename Arm::Joints
 struct Policy {
   static constexpr int kCrowd = 4, kTries = 16, kPatience = 5;
   static constexpr double kArrived = 5e-10, kExact = 1e-12, kPoseTolerance = 1e-06, kOrthonormal = 1e-14, kLevel
-      = 0.0001, kCoincident = 1e-06, kAlike = 0.01, kHalfway = 2e-14, kMeeting = 2e-05, kLimitTolerance = 1e-09,
+      = 0.0001, kCoincident = 1e-06, kAlike = 0.01, kHalfway = 2e-14, kMeeting = 2e-05, kLimitTolerance = 2e-10,
       kLimitReach = 1e-05, kTryStep = 0.39269908169872414, kSingularBelow = 1e-07, kContinuumBelow = 0.001,
       kFoldReach = 0.0001, kBesideReach = 0.0, kAnywhere = 1000.0, kLeastDamping = 1e-14, kDamping = 0.001,
       kLargestStep = 0.3, kConverged = 1e-13, kProgress = 0.8;

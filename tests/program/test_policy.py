@@ -6,13 +6,14 @@ import math
 from itertools import pairwise
 
 from ikgen.program.policy import REFINEMENT, SolvePolicy
+from ikgen.verify.checks import CLOSURE_TOLERANCE
 
 
 def test_tolerances_are_ordered() -> None:
     p = SolvePolicy()
     chains = (
-        (0.0, p.orthonormal, p.halfway, p.converged, p.exact, p.arrived, p.limit_tolerance,
-         p.coincident, p.meeting, p.alike, 1.0),
+        (0.0, p.orthonormal, p.halfway, p.converged, p.exact, p.arrived, p.coincident, p.meeting,
+         p.alike, 1.0),
         (0.0, p.singular_below, p.fold_reach, p.continuum_below, p.fold, 1.0),
         (0.0, p.limit_tolerance, p.limit_reach, p.coincident * 100.0),
         (0.0, p.least_damping, p.damping, p.largest_step, p.progress, 1.0),
@@ -20,6 +21,7 @@ def test_tolerances_are_ordered() -> None:
     )  # fmt: skip
     for chain in chains:
         assert all(a < b for a, b in pairwise(chain)), chain
+    assert 2.0 * p.limit_tolerance + p.arrived < CLOSURE_TOLERANCE  # two joints put on their limits
     assert 0.0 < p.rough_square < p.arrived**2
     assert p.tries * p.try_step == 2.0 * math.pi
 

@@ -117,8 +117,8 @@ class SolverModule:
     def policy(self) -> SolvePolicy:
         """The tolerances of `solve`, five of them of this arm.
 
-        - `limit_tolerance`: over `most_driven`, as a joint put on its limit moves the tool that many times
-          as far.
+        - `limit_tolerance`: over `most_driven` and what of the arm's size is more than 1 m, as a joint put
+          on its limit moves the tool that many times as far.
         - `fold_reach`: below it a second solution of the file may lie beside a row; grows with the root of
           the deviation.
         - `beside_reach`: below it (everywhere if `far`) displaced poses are solved too, as a solution of
@@ -129,10 +129,10 @@ class SolverModule:
           in; likewise.
         """
         plain, off = SolvePolicy(), max(self.dh.deviation)
-        root, tolerance = math.sqrt(off), plain.limit_tolerance / self.dh.most_driven
+        root, farther = math.sqrt(off), self.dh.most_driven * max(1.0, self.size)
         return replace(
             plain,
-            limit_tolerance=tolerance,
+            limit_tolerance=plain.limit_tolerance / farther,
             fold_reach=max(plain.fold_reach, plain.fold * root),
             beside_reach=plain.anywhere if self.far else plain.fold * root,
             broken_reach=plain.broken_reach * off,

@@ -90,7 +90,7 @@ class SolvePolicy:
     halfway: float = 2e-14
     crowd: int = 4
     meeting: float = 2e-5
-    limit_tolerance: float = 1e-9
+    limit_tolerance: float = 2e-10
     limit_reach: float = 1e-5
     tries: int = 16
     try_step: float = 0.39269908169872414

@@ -22,9 +22,6 @@ CLOSURE_TOLERANCE = 1e-9
 """m and rad: what "right" means. Of an arm over 1 m long, or of a row with a longer slide, in units of
 that length."""
 
-PUT_ON_LIMIT = (
-    1e-9  # rad or m: a row that is off a limit by no more is put on it, which moves its pose
-)
 DISTINCT_TOLERANCE = 1e-6  # rad or m: rows closer than this are one solution
 LIMIT_TOLERANCE = 1e-6  # rad or m: at a bound, a double root is known to about 1e-8 only
 FLAGGED_REGULAR = 1e-2  # smallest singular value above which a singular flag is wrong
@@ -44,14 +41,12 @@ def check_closure(arm: ArmUnderTest, trials: Sequence[Trial]) -> CheckResult:
         position, rotation = arm.task.errors(arm.oracle.forward(q), poses)
         position, rotation = (np.where(np.isnan(e), np.inf, e) for e in (position, rotation))
         error = np.maximum(position / arm.size_of(np.nan_to_num(q)), rotation)
-        on_limit = ((q == arm.lower) | (q == arm.upper)).any(axis=1)
-        excess = error - np.where(on_limit, CLOSURE_TOLERANCE + PUT_ON_LIMIT, CLOSURE_TOLERANCE)
         count += len(q)
-        failures += int(np.sum(excess > 0.0))
+        failures += int(np.sum(error > CLOSURE_TOLERANCE))
         worst_p, worst_r = max(worst_p, position.max()), max(worst_r, rotation.max())
-        if excess.max() > worst:
-            k = int(np.argmax(excess))
-            worst = float(excess[k])
+        if error.max() > worst:
+            k = int(np.argmax(error))
+            worst = float(error[k])
             case = spell(trial.sample.label, index[k], row=q[k], pose=poses[k])
     numbers = (("position m", float(worst_p)), ("rotation rad", float(worst_r)))
     return result("closure", count, failures if count else 1, numbers, worst_case=case)

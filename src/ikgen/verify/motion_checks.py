@@ -10,7 +10,7 @@ import numpy as np
 
 from ikgen.model.arrays import Array
 from ikgen.verify.arm import ArmUnderTest
-from ikgen.verify.checks import CLOSURE_TOLERANCE, PUT_ON_LIMIT
+from ikgen.verify.checks import CLOSURE_TOLERANCE
 from ikgen.verify.runners.runner import MovingRunner
 from ikgen.verify.trials import result, spell
 from ikgen.verify.verification_report import CheckResult
@@ -136,4 +136,4 @@ def _closes(arm: ArmUnderTest, q: Array, poses: Array) -> bool:
     """Whether rows (N, dof) have their poses (N, 4, 4)."""
     position, rotation = arm.task.errors(arm.oracle.forward(q), poses)
     error = np.maximum(position / arm.size_of(q), rotation)
-    return bool(np.all(error <= CLOSURE_TOLERANCE + PUT_ON_LIMIT))
+    return bool(np.all(error <= CLOSURE_TOLERANCE))

@@ -59,7 +59,7 @@ def rows(n: int) -> Array:
     rng = np.random.default_rng(11)
     q = rng.uniform(-4.0, 4.0, (n, 1, 5))
     q[:, 0, 3] = rng.uniform(-0.5, 1.5, n)
-    edges = np.array([-pi, pi, pi + 5e-10, 7.0 - 2.0 * pi, -4.0 - 5e-10, 1.0 + 5e-10])
+    edges = np.array([-pi, pi, pi + 1e-10, 7.0 - 2.0 * pi, -4.0 - 1e-10, 1.0 + 1e-10])
     q[::3, 0, 0], q[::3, 0, 1] = (
         rng.choice(edges[:3], len(q[::3])),
         rng.choice(edges[3:5], len(q[::3])),
@@ -85,7 +85,7 @@ def test_floats_and_arrays_agree(limits: bool, seed: tuple[float, ...] | None) -
 
 
 def test_rows_lie_on_the_limits_that_they_barely_miss() -> None:
-    ((row, flag),) = place_rows(arm(), [((0.0, 0.0, 0.0, 1.0 + 5e-10, 0.0), True)], None, True)
+    ((row, flag),) = place_rows(arm(), [((0.0, 0.0, 0.0, 1.0 + 1e-10, 0.0), True)], None, True)
     assert row[3] == 1.0 and flag
     assert not place_rows(arm(), [((0.0, 0.0, 0.0, 1.0 + 5e-9, 0.0), True)], None, True)
 
@@ -130,7 +130,11 @@ def test_rows_hardly_outside_are_told_apart(joint: int) -> None:
     row = np.array([0.3, 0.2, 0.1, 0.5, 0.0])
     for bound, sign in ((one.lower[joint], -1.0), (one.upper[joint], 1.0)):
         for turn in (0.0, 2.0 * pi, -2.0 * pi) if joint != 3 else (0.0,):
-            for beyond, kind in ((0.5e-9, "inside"), (0.5 * reach, "close"), (1.5 * reach, "out")):
+            for beyond, kind in (
+                (0.5 * one.policy.limit_tolerance, "inside"),
+                (0.5 * reach, "close"),
+                (1.5 * reach, "out"),
+            ):
                 row[joint] = bound + sign * beyond + turn
                 inside, close = rows_at_limits(one, [(tuple(row), True)], None, True)
                 assert (len(inside), len(close)) == (kind == "inside", kind == "close")

@@ -16,6 +16,7 @@ namespace elimination {
 
 inline constexpr double kFarthest = 1e4;  // of a slide, in arm lengths: beyond are those that become parallel
 
+inline constexpr double kSettled = 1e-14;  // error that undamped steps leave, and damped ones where solutions do not meet
 inline constexpr double kStalled = 1e-6;  // error where more than two solutions meet: steps get no closer soon
 
 // Adds a candidate of a run if it can be refined; one that is far off shows that the run's roots are not all sharp.
@@ -25,7 +26,7 @@ inline void add_refined(const Frames& F, const Frame& T, const Turning& turning,
   const double before = residual(F, T, q.data(), turning).worst;
   double farthest = 0.0, after = refine_one(F, T, turning, q);
   const bool stalls = after >= kVerified && after < kStalled;
-  if (after >= kExactly && after < kStalled) after = refine_along(F, T, turning, q);
+  if (after > kSettled && after < kStalled) after = refine_along(F, T, turning, q);
   for (Index i = 0; i < 6; ++i) farthest = std::max(farthest, turning[i] ? 0.0 : std::abs(q[i]));
   if (farthest < kFarthest && after < kVerified) keep(solution_of(turning, q), out);
   if (farthest < kFarthest && stalls) roots.stalled = true;
