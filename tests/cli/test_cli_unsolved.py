@@ -64,6 +64,10 @@ def test_general_five_joints(
     cause = "5 joints move and the task fixes 6 freedoms: more than the arm can do"
     assert f"error: no closed form found for the task 'pose': {cause}\nhint: ikgen from-dh " in said
     assert "equations" not in said
+    own = (
+        r"without a task that is asked for the arm gets 'position-direction(:[xy])?' \(at most 16 "
+    )
+    assert re.search(rf"\nhint: ikgen from-dh \S*general.toml\n      {own}", said)
     assert run(["from-dh", str(general), "--task", "pose", "-o", str(out), "-v"]) == 3
     told = capsys.readouterr().err
     assert "behavior tree:" in told and "solved nothing; left are" in told

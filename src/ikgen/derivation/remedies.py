@@ -45,24 +45,51 @@ def helped(error: UnsolvedChainError, request: Request, progress: Progress) -> U
     far it came."""
     if error.unsolved is None:
         return error
+    own = _unasked(error.unsolved, request, progress)
     tried = remedies(error.unsolved, progress)
     found = [a for a in tried if a.closed]
-    if found:
-        words = "; ".join(
-            f"{a.options} (at most {counted(a.max_solutions, 'solution')})" for a in found
-        )
-        hint = f"{found[0].asked(request).command()}\nclosed forms were found with: {words}"
-        if any(a.free for a in found):
-            hint += "; --lock JOINT=VALUE instead of --free makes the joint a constant"
-    elif tried:
-        hint = f"{error.hint}\ntried without success: {_listed(tried)}"
-    else:
+    if own is None and not tried:
         return error
+    lines = []
+    if own is not None:
+        lines.append(replace(request, task=None, tool_axis=None).command())
+        most = counted(own.max_solutions, "solution")
+        lines.append(f"without a task that is asked for the arm gets '{own.task}' (at most {most})")
+    elif found:
+        lines.append(found[0].asked(request).command())
+    if found:
+        lines.append(_closed(found))
+    elif own is None:
+        lines += [error.hint, f"tried without success: {_listed(tried)}"]
     better = UnsolvedChainError(
-        error.message, unsolved=error.unsolved, details=error.details, hint=hint
+        error.message, unsolved=error.unsolved, details=error.details, hint="\n".join(lines)
     )
     better.warnings = error.warnings
     return better
+
+
+def _closed(found: list[Attempt]) -> str:
+    """The attempts that came to closed forms."""
+    words = "; ".join(
+        f"{a.options} (at most {counted(a.max_solutions, 'solution')})" for a in found
+    )
+    lock = any(a.free for a in found)
+    more = "; --lock JOINT=VALUE instead of --free makes the joint a constant" if lock else ""
+    return f"closed forms were found with: {words}{more}"
+
+
+def _unasked(unsolved: Unsolved, request: Request, progress: Progress) -> Attempt | None:
+    """What is made where no task is asked for, if this is another one than was, and has a closed form."""
+    from ikgen.derivation.advice import attempt
+    from ikgen.derivation.closed_forms import closed_form
+    from ikgen.derivation.task_forms import Demand
+
+    if request.task is None and request.tool_axis is None:
+        return None
+    progress("try", "the task that fits")
+    form = closed_form(unsolved.reading, Demand(None, (), progress))
+    made = attempt(form, progress)
+    return made if made.closed and made.task != unsolved.task.name else None
 
 
 def _listed(tried: list[Attempt]) -> str:
