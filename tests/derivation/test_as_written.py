@@ -117,7 +117,7 @@ def test_equations_of_the_exact_solution_are_looked_at_first() -> None:
     few, none = tried
     assert few is not None and none is None
     assert {e.label for s in graph.steps for e in s.candidate.sources} <= set(few)
-    assert 4 * len(few) < len({e.label for e in graph.known.equations.equations})
+    assert 4 * len(few) < len({e.label for e in graph.workspace().equations.equations})
     assert solve_as_written(dh, graph, attempt)[1].order == whole.order
 
 

@@ -93,6 +93,6 @@ def planar() -> object:
 
 
 def test_graphs_are_told_and_compared_without_what_is_known(planar) -> None:
-    assert ", known=" not in repr(planar) and ", open_joints=" in repr(planar)
-    assert replace(planar, known=planar.workspace()) == planar
+    assert ", _known=" not in repr(planar) and ", open_joints=" in repr(planar)
+    assert replace(planar, _known=planar.workspace()) == planar
     assert replace(planar, passed=(*planar.passed, FIRST)) != planar

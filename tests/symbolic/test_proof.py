@@ -53,9 +53,9 @@ def _with_equation(graph: SolutionGraph, wrong: Equation) -> SolutionGraph:
 
 
 def test_an_equation_with_a_wrong_sign_is_refuted(puma: Derivation) -> None:
-    graph = replace(puma.graph, known=puma.graph.workspace())
+    graph = replace(puma.graph, _known=puma.graph.workspace())
     used = graph.steps[1].candidate.sources[0]
-    wrong = replace(used, left=graph.known.graph.neg(used.left))
+    wrong = replace(used, left=graph._known.graph.neg(used.left))
     matrix, _ = prove_identities(_with_equation(graph, wrong))
     assert not matrix[0].proved and matrix[0].wrong
     assert "differ" in matrix[0].reason
@@ -63,8 +63,8 @@ def test_an_equation_with_a_wrong_sign_is_refuted(puma: Derivation) -> None:
 
 
 def test_a_coefficient_that_is_slightly_off_is_refuted(puma: Derivation) -> None:
-    graph = replace(puma.graph, known=puma.graph.workspace())
-    g = graph.known.graph
+    graph = replace(puma.graph, _known=puma.graph.workspace())
+    g = graph._known.graph
     first, *rest = graph.steps
     form = first.candidate.form
     off = replace(form, c=g.mul(g.const(1.0 + 2.0**-20), form.c))  # type: ignore[call-arg]

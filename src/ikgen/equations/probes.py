@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ikgen.kinematics.fixed_order import product
 from ikgen.kinematics.forward import file_slopes
-from ikgen.kinematics.rigid import dh_link
+from ikgen.kinematics.rigid import dh_link, read_only
 from ikgen.kinematics.whole_turns import range_of
 from ikgen.model.dh import Angle, DHChain, DHRow, Length
 
@@ -178,6 +178,7 @@ def make_probes(
     pose = dh_pose(dh, values, kept)
     if tool:
         pose = product(pose, dh.X_tip)
+    values, pose = read_only(values), read_only(pose)
     return Probes(values, pose, GENERIC, GENERIC + len(regular), typical, kept)
 
 

@@ -33,7 +33,7 @@ def draw(graph: SolutionGraph, versions: Versions, title: str) -> Drawing:
     every = [*place.values(), *(_point(at) for route in plan.routes.values() for at in route)]
     width = max((x for x, _ in every), default=0.0) + _WIDTH / 2 + _MARGIN
     height = max((y for _, y in every), default=0.0) + _HEIGHT / 2 + _MARGIN
-    leaves = {graph.known.joint_variable(j): _HELD for j in graph.held}
+    leaves = {graph.joint_variable(j): _HELD for j in graph.held}
     leaves |= {s.candidate.unknown: s.candidate.leaf for s in graph.steps}
     forks = dict(versions.forks)
     arrows = [

@@ -58,7 +58,7 @@ def leftover_section(graph: SolutionGraph) -> list[Block]:
     """The section of an unsolved arm."""
     normal = Normalizer()
     left = _left(graph, normal)
-    names = [graph.known.joint_variable(j) for j in graph.open_joints]
+    names = [graph.joint_variable(j) for j in graph.open_joints]
     lead: list[Inline] = ["No closed form was found for ", *_listed(names), ". "]
     blocks: list[Block] = [Heading(("What is left",), anchor="left")]
     if not left:

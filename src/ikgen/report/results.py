@@ -55,7 +55,7 @@ def graph_section(
 
 def poses_section(graph: SolutionGraph, versions: Versions) -> list[Block]:
     """The sets of versions that make whole solutions."""
-    joints = [graph.known.joint_variable(j) for j in range(graph.dh.dof)]
+    joints = [graph.joint_variable(j) for j in range(graph.dh.dof)]
     known = [v for v in joints if v in versions.within]
     lead = (
         f"{versions.poses} solutions of the whole arm, one a choice of branches; "

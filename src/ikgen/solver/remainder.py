@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from ikgen.algebra.expression import Expr
 from ikgen.equations.equation import Equation
-from ikgen.equations.knowledge import UNREADABLE, PolynomialEquation, Variable
+from ikgen.equations.knowledge import UNREADABLE, Knowledge, PolynomialEquation, Variable
 from ikgen.solver.solution_graph import SolutionGraph
 
 __all__ = ["NearMiss", "OpenEquation", "count_open", "near_misses", "open_equations"]
@@ -42,10 +42,9 @@ class NearMiss:
     source: OpenEquation
 
 
-def _open(graph: SolutionGraph) -> Iterator[tuple[int, Equation]]:
+def _open(k: Knowledge) -> Iterator[tuple[int, Equation]]:
     """The equations with unknowns, each once, and how many are independent; without those that hold
     entries that the task does not read."""
-    k = graph.known
     told: set[tuple[int, int]] = set()
     for e in k.equations.equations:
         sides = (e.left.id, e.right.id)
@@ -57,7 +56,7 @@ def _open(graph: SolutionGraph) -> Iterator[tuple[int, Equation]]:
 
 def count_open(graph: SolutionGraph) -> int:
     """How many equations hold unknowns still."""
-    return sum(1 for _ in _open(graph))
+    return sum(1 for _ in _open(graph.workspace()))
 
 
 def open_equations(
@@ -66,7 +65,7 @@ def open_equations(
     """Up to `most` equations with unknowns, those with the fewest first and of these the shortest
     (`size` of both sides)."""
     k = graph.workspace()
-    ranked = [(rank, size(e.left) + size(e.right), e.label, e) for rank, e in _open(graph)]
+    ranked = [(rank, size(e.left) + size(e.right), e.label, e) for rank, e in _open(k)]
     found: list[OpenEquation] = []
     for _, length, _, e in sorted(ranked, key=lambda x: x[:3]):
         p = k.polynomial_equation(e)

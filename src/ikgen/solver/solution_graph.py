@@ -34,12 +34,16 @@ class SolutionGraph:
     held: tuple[int, ...]
     probes: Probes
     ticks: tuple[Tick, ...]
-    known: Knowledge = field(repr=False, compare=False)
+    _known: Knowledge = field(repr=False, compare=False)
     outline: tuple[tuple[str, ...], ...] = ()
 
     def workspace(self) -> Knowledge:
         """What was known at the end, over an expression graph of its own that may grow."""
-        return self.known.workspace()
+        return self._known.workspace()
+
+    def joint_variable(self, joint: int) -> Variable:
+        """The variable of a joint."""
+        return self._known.joint_variable(joint)
 
     @property
     def order(self) -> tuple[str, ...]:
@@ -120,5 +124,5 @@ def graph_of(session: Session) -> SolutionGraph:
         held=session.held,
         probes=session.probes,
         ticks=tuple(session.ticks),
-        known=k.workspace(),
+        _known=k.workspace(),
     )
