@@ -58,8 +58,9 @@ def installed(module: SolverModule, folder: Path) -> tuple[ModuleType, ModuleTyp
     pip = [sys.executable, "-m", "pip", "--python", folder / "venv/bin/python", "install"]
     command = [*pip, "--no-deps", "--target", target, folder / name]
     subprocess.run(command, check=True, env={**os.environ, "CMAKE_ARGS": QUICK})
-    sys.path.insert(0, str(target))
-    return importlib.import_module(name), import_text(emit_module(module), folder)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(str(target))
+        return importlib.import_module(name), import_text(emit_module(module), folder)
 
 
 @pytest.fixture(scope="module")

@@ -18,7 +18,7 @@ FIXTURES = Path(__file__).parents[2] / "urdf_fixtures"
 @pytest.mark.parametrize("row", IMPORTERS, ids=lambda row: row.kind)
 def test_every_row_has_its_module_and_its_test(row):
     assert find_spec(row.module) is not None
-    assert (Path(__file__).parent / f"test_{row.kind}.py").is_file()
+    assert (Path(__file__).parent / row.kind / f"test_{row.kind}.py").is_file()
 
 
 def test_rows_say_what_files_take_and_take_in(tmp_path):

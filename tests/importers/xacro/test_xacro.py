@@ -14,7 +14,7 @@ from ikgen.importers import load_tree
 from ikgen.importers.packages import PackageFinder, PackageNotFoundError
 from ikgen.importers.xacro.expansion import expand
 
-FIXTURES = Path(__file__).parents[2] / "urdf_fixtures"
+FIXTURES = Path(__file__).parents[3] / "urdf_fixtures"
 AR4 = FIXTURES / "ar4_ros_driver/annin_ar4_description"
 AR4_ARGUMENTS = {"ar_model": "mk3", "include_gripper": "false"}
 OPEN = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'

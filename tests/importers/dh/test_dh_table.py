@@ -14,7 +14,7 @@ from ikgen.importers.dh.dh_table import read_dh_table
 from ikgen.kinematics.forward import dh_forward, file_forward
 from ikgen.model.dh import DHChain
 
-FIXTURES = Path(__file__).resolve().parents[2] / "urdf_fixtures"
+FIXTURES = Path(__file__).resolve().parents[3] / "urdf_fixtures"
 ROW = ("type", "alpha", "a", "d", "theta")
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from ikgen.importers.xacro.declared_arguments import declared_arguments
 
-AR4 = Path(__file__).parents[2] / "urdf_fixtures/ar4_ros_driver/annin_ar4_description"
+AR4 = Path(__file__).parents[3] / "urdf_fixtures/ar4_ros_driver/annin_ar4_description"
 OPEN = '<robot name="$(arg name)" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
 
 

@@ -19,7 +19,7 @@ from ikgen.chains.selection import select_chain
 from ikgen.errors import BadDescriptionError, IkgenError, UsageError
 from ikgen.importers import load_tree
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 FIXTURES = sorted((ROOT / "urdf_fixtures").glob("*.urdf"))
 collection = pytest.mark.skipif(not ARMS_FILE.is_file(), reason=ABSENT)
 
