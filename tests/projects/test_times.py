@@ -11,6 +11,8 @@ import pytest
 from benchmarks import builds
 
 IDLE = 0.8
+ONE_CHECKED = 0.2
+"""Seconds in which an arm is seen to be fresh: a step of every build."""
 
 
 def processor_seconds(*arguments: str, cwd: Path) -> float:
@@ -22,15 +24,16 @@ def processor_seconds(*arguments: str, cwd: Path) -> float:
     return float(after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime)
 
 
-def test_fifty_fresh_arms_are_checked_in_half_a_second(tmp_path: Path) -> None:
+def test_fresh_arms_are_checked_at_once(tmp_path: Path) -> None:
     config = builds.write_config(tmp_path, 1, 20)
     builds.seconds("build", "--no-verify", "-q", cwd=tmp_path)
+    check = ("build", "--check", "--no-verify")
+    assert min(processor_seconds(*check, cwd=tmp_path) for _ in range(5)) < ONE_CHECKED
     table = config.read_text()
     tables = [table.replace('"generated"', f'"generated_{i}"') for i in range(50)]
     for i in range(50):
         shutil.copytree(tmp_path / "generated", tmp_path / f"generated_{i}")
     config.write_text("\n".join(tables))
-    check = ("build", "--check", "--no-verify")
     taken = min(processor_seconds(*check, cwd=tmp_path) for _ in range(5))
     assert taken < builds.CHECK_SECONDS
 
