@@ -32,6 +32,7 @@ from ikgen.kinematics.twist_links import twist_chain
 from ikgen.model.angle_function import cosine_and_sine
 from ikgen.model.dh import ARM_ANGLE_OPTION, Angle, DHRow
 from ikgen.program.policy import SolvePolicy
+from ikgen.program.routines import GENERAL_6R
 
 PI, INF = math.pi, math.inf
 EVERY = (-INF, INF)
@@ -97,7 +98,7 @@ def planned(
 @pytest.mark.parametrize("bounded", [None, False, True])
 def test_the_elimination_about_parallel_axes_comes_with_its_header(bounded: bool | None) -> None:
     module = made_module()
-    call = replace(module.program.levels[2].call, routine="general_6r")
+    call = replace(module.program.levels[2].call, routine=GENERAL_6R)
     level = replace(module.program.levels[2], call=call)
     program = replace(module.program, levels=(*module.program.levels[:2], level))
     for kind, name in zip(ParallelKind, ("kPlain", "kUpright", "kMeeting"), strict=True):

@@ -11,6 +11,7 @@ from ikgen.algebra.expression import Expr
 from ikgen.lowering.placement import LoweredLevel, Placement
 from ikgen.lowering.serialize import serialize
 from ikgen.program.ops import Op, Operand
+from ikgen.program.routines import TRIG_QUARTIC
 from ikgen.program.statements import Call, Let, Level, Require
 from ikgen.solver.solution_graph import SolutionGraph
 from ikgen.solver.solve import solve_chain
@@ -118,11 +119,11 @@ def test_arguments_of_a_routine_are_written_in_its_call(work: Placement) -> None
     inner = g.binary("min", sigma, work.atom("v"))
     work.place(inner)
     roots = tuple(g.atom("root", name, [0.5] * g.probes, unknown=False) for name in "cs")
-    work.levels.append(LoweredLevel(4, None, ("a_routine", (outer, inner, g.const(0.5)), roots)))
+    work.levels.append(LoweredLevel(4, None, (TRIG_QUARTIC, (outer, inner, g.const(0.5)), roots)))
     for atom, name in zip(roots, "cs", strict=True):
         work.level_of[atom.id], work.names[atom.id] = 2, name
     first, second, third = levels(work)
     (name,) = lets(first)
     assert not lets(second) and not lets(third)
-    assert third.call == Call("a_routine", (name, Op("min", ("sigma_1", "v")), 0.5), ("c", "s"))
+    assert third.call == Call(TRIG_QUARTIC, (name, Op("min", ("sigma_1", "v")), 0.5), ("c", "s"))
     assert (third.branches, third.sigma, third.solved) == (4, None, ())

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from tests.support.tables import table
 
 from ikgen.equations.knowledge import Variable
+from ikgen.errors import PlugInError
 from ikgen.forms.lowered_form import Tolerances
 from ikgen.forms.quartic_form import TrigQuartic
 from ikgen.lowering.frames import operand_of
@@ -15,6 +18,7 @@ from ikgen.lowering.placement import LoweredLevel, Placement
 from ikgen.lowering.program_inputs import seed_values
 from ikgen.program.interpret import evaluate
 from ikgen.program.ops import operand_names
+from ikgen.program.routines import TRIG_QUARTIC
 from ikgen.program.statements import Comment, Let, Level, Program, Require
 from ikgen.solver.solution_graph import SolutionGraph
 from ikgen.solver.solve import solve_chain
@@ -93,13 +97,24 @@ def test_a_routine_s_roots_make_a_level_of_their_own() -> None:
     assert (len(work.levels), level.branches, level.sigma) == (2, 4, None)
     assert level.call is not None
     routine, arguments, atoms = level.call
-    assert routine == "trig_quartic" and len(arguments) == 5
+    assert routine is TRIG_QUARTIC and len(arguments) == 5
     assert atoms == work.knowledge.variables.pair((1, 0))
     assert [work.names[atom.id] for atom in atoms] == ["c1", "s1"]
     assert [work.level(atom) for atom in atoms] == [1, 1]
     assert level.items == [Comment("theta_1: quartic")]
     for e in arguments:
         assert work.level(e) == 0 and (not e.args or e.id in work.placed)
+
+
+@pytest.mark.parametrize("name", ["cubic", "general_6r"])
+def test_a_routine_that_finds_no_roots_is_refused(name: str) -> None:
+    work = Placement(solve_chain(table(("R", "0", 0.0, 0.0), ("P", "1", 0.0, 0.0))), 0.0)
+    g, v = work.g, Variable("angle", (1, 0))
+    form = TrigQuartic(g.one, g.zero, g.zero, g.one, g.zero)
+    lowered = replace(form.lower(g, g.one, work.tolerances), routine=name)
+    with pytest.raises(PlugInError, match=f"'quartic' .* by a routine '{name}'") as refused:
+        _routine(work, v, form, lowered, "theta_1: quartic")
+    assert refused.value.hint == "there is: trig_quartic, trig_quartic_wide, trig_polynomial"
 
 
 def test_where_a_routine_s_divisor_vanishes_its_root_is_the_seed_s() -> None:

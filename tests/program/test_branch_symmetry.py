@@ -18,6 +18,7 @@ from ikgen.program.branch_symmetry import with_shared_branches
 from ikgen.program.inputs import PoseEntry, SeedValue
 from ikgen.program.interpret import Row, run
 from ikgen.program.ops import Op, Operand, operand_names
+from ikgen.program.routines import TRIG_QUARTIC
 from ikgen.program.statements import (
     Call,
     Comment,
@@ -238,7 +239,7 @@ def test_a_slide_s_branches_meet_at_zero() -> None:
 
 def test_roots_of_a_routine_stay_where_they_are() -> None:
     written = program((), (Let("out", op("mul", "u", "u")),))
-    call = Level(2, None, Call("roots", ("t00",), ("u",)), written.levels[1].body)
+    call = Level(2, None, Call(TRIG_QUARTIC, ("t00",), ("u",)), written.levels[1].body)
     both = Level(2, "sigma_1", None, (Let("s", op("mul", "sigma_1", "u")),))
     routine = replace(written, levels=(written.levels[0], call, both))
     assert body(with_shared_branches(routine), 1) == {"out": op("mul", "u", "u")}

@@ -13,6 +13,7 @@ from tests.support.pan_lift import pan_lift
 from ikgen.program.inputs import SeedValue
 from ikgen.program.interpret import _BINARY, _UNARY, Row, evaluate, run
 from ikgen.program.ops import BOOLEAN, Op, operand_names, renamed
+from ikgen.program.routines import TRIG_QUARTIC
 from ikgen.program.statements import (
     Call,
     Comment,
@@ -123,16 +124,16 @@ def test_names_of_one_branch_are_not_seen_in_another() -> None:
 
 
 def test_a_routine_gives_as_many_branches_as_it_finds() -> None:
-    call = Call("roots", ("seed_q1", 2.0), ("u", "v"))
+    call = Call(TRIG_QUARTIC, ("seed_q1", 2.0), ("u", "v"))
     level = Level(4, None, call, (Let("x", Op("sub", ("u", "v"))),))
     program = empty(levels=(Level(1, None, None, ()), level))
 
     def roots(a: float, b: float) -> list[tuple[float, ...]]:
         return [(a + k, b) for k in range(3)]
 
-    found = run(program, {"seed_q1": 5.0}, {"roots": roots})
+    found = run(program, {"seed_q1": 5.0}, {TRIG_QUARTIC.name: roots})
     assert [row.q[0] for row in found] == [3.0, 4.0, 5.0]
-    assert run(program, {"seed_q1": 5.0}, {"roots": lambda *_: []}) == []
+    assert run(program, {"seed_q1": 5.0}, {TRIG_QUARTIC.name: lambda *_: []}) == []
 
 
 def test_a_row_is_singular_where_any_flag_holds() -> None:

@@ -12,10 +12,11 @@ from ikgen.program.inputs import HeldValue, PoseEntry, SeedValue
 from ikgen.program.interpret import run
 from ikgen.program.liveness import live_names, trimmed
 from ikgen.program.ops import Op
+from ikgen.program.routines import TRIG_QUARTIC
 from ikgen.program.statements import Call, JointOutput, Let, Level, Program, Require
 from ikgen.solver.solve import solve_chain
 
-CALL = Call("roots", ("given",), ("u",))
+CALL = Call(TRIG_QUARTIC, ("given",), ("u",))
 PROGRAM = Program(
     name="p",
     parameters=(),
@@ -64,10 +65,10 @@ def test_a_trimmed_program_gives_the_same_rows() -> None:
         return [(given,), (-given,)]
 
     inputs = {"t03": 0.5, "t13": 0.1, "seed_q1": 0.3, "seed_q2": 0.2, "held_q3": 0.1}
-    full = run(PROGRAM, inputs, {"roots": roots})
+    full = run(PROGRAM, inputs, {TRIG_QUARTIC.name: roots})
     found = trimmed(PROGRAM)
     few = {one.name: inputs[one.name] for one in found.inputs}
-    assert len(full) == 2 and run(found, few, {"roots": roots}) == full
+    assert len(full) == 2 and run(found, few, {TRIG_QUARTIC.name: roots}) == full
 
 
 def test_lowered_programs_are_trimmed() -> None:

@@ -12,6 +12,7 @@ from ikgen.emit.solver_module import SolverModule
 from ikgen.model.joint_tree import Limits
 from ikgen.program.inputs import HeldValue, PoseEntry, SeedValue
 from ikgen.program.ops import Op, Operand
+from ikgen.program.routines import TRIG_QUARTIC
 from ikgen.program.statements import (
     Call,
     Comment,
@@ -53,7 +54,7 @@ def made_program() -> Program:
         ),
         ("c1", "s1"),
     )  # fmt: skip
-    call = Call("trig_quartic", (0.25, "d3", "c1", Op("neg", ("s1",)), 0.1), ("c2", "s2"))
+    call = Call(TRIG_QUARTIC, (0.25, "d3", "c1", Op("neg", ("s1",)), 0.1), ("c2", "s2"))
     last = Level(
         4, None, call,
         (

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ikgen.program import routines
+from ikgen.program.routines import Routine
 from ikgen.runtime.python.elimination.coupled_angle import CoupledAngle
 from ikgen.runtime.python.elimination.coupled_both import CoupledBothAngle
 from ikgen.runtime.python.elimination.general_6r import Finder, candidates
@@ -20,13 +22,12 @@ __all__ = ["ELIMINATIONS", "EliminationRoutine", "elimination_routine", "finder"
 
 @dataclass(frozen=True, slots=True)
 class EliminationRoutine:
-    """One elimination of six joints. `name`: the routine that a Program calls, after which C++ calls its
-    class; `words`: how many of the joints turn and slide; `find`: what finds candidates in Python, or what
-    makes that of the chain's axes; `most`: solutions at most (Raghavan and Roth 1993), None where they
-    depend on the chain. `both`: by half angles of both angles beside the hidden one; `coupled`: one joint
-    moves several axes."""
+    """One elimination of six joints. `called`: the routine that a Program calls; `words`: how many of the
+    joints turn and slide; `find`: what finds candidates in Python, or what makes that of the chain's axes;
+    `most`: solutions at most (Raghavan and Roth 1993), None where they depend on the chain. `both`: by half
+    angles of both angles beside the hidden one; `coupled`: one joint moves several axes."""
 
-    name: str
+    called: Routine
     words: str
     slides: int
     find: Finder | type[CoupledAngle]
@@ -36,13 +37,17 @@ class EliminationRoutine:
 
 
 ELIMINATIONS = (
-    EliminationRoutine("general_6r", "6R", 0, candidates, 16),
-    EliminationRoutine("one_slide", "5R1P", 1, one_slide_candidates, 16),
-    EliminationRoutine("one_slide_both", "5R1P", 1, one_slide_both_candidates, 16, both=True),
-    EliminationRoutine("two_slides", "4R2P", 2, two_slide_candidates, 8),
-    EliminationRoutine("three_slides", "3R3P", 3, three_slide_candidates, 2),
-    EliminationRoutine("coupled_6r", "coupled 6R", 0, CoupledAngle, coupled=True),
-    EliminationRoutine("coupled_both", "coupled 6R", 0, CoupledBothAngle, both=True, coupled=True),
+    EliminationRoutine(routines.GENERAL_6R, "6R", 0, candidates, 16),
+    EliminationRoutine(routines.ONE_SLIDE, "5R1P", 1, one_slide_candidates, 16),
+    EliminationRoutine(
+        routines.ONE_SLIDE_BOTH, "5R1P", 1, one_slide_both_candidates, 16, both=True
+    ),
+    EliminationRoutine(routines.TWO_SLIDES, "4R2P", 2, two_slide_candidates, 8),
+    EliminationRoutine(routines.THREE_SLIDES, "3R3P", 3, three_slide_candidates, 2),
+    EliminationRoutine(routines.COUPLED_6R, "coupled 6R", 0, CoupledAngle, coupled=True),
+    EliminationRoutine(
+        routines.COUPLED_BOTH, "coupled 6R", 0, CoupledBothAngle, both=True, coupled=True
+    ),
 )
 
 

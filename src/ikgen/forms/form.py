@@ -41,6 +41,11 @@ class Form(ABC):
     remark: ClassVar[tuple[str | Math, ...]] = ()
 
     @property
+    def words(self) -> str:
+        """What it is, for messages."""
+        return f"the form '{self.name}' ({type(self).__module__}.{type(self).__qualname__})"
+
+    @property
     def coefficients(self) -> tuple[Expr, ...]:
         """The coefficients in the order of the fields."""
         return tuple(getattr(self, f.name) for f in fields(self))

@@ -18,6 +18,7 @@ from ikgen.formulas import mathtext as m
 from ikgen.formulas.mathtext import Math
 from ikgen.formulas.notation import angle, show
 from ikgen.model.arrays import Array
+from ikgen.program.routines import TRIG_QUARTIC, TRIG_QUARTIC_WIDE
 
 __all__ = ["TrigQuartic"]
 
@@ -84,13 +85,13 @@ class TrigQuartic(Form):
         return g.dot([*self.coefficients[:4]], [*double, g.neg(s), c])
 
     def lower(self, g: ExpressionGraph, sigma: Expr, tolerances: Tolerances) -> LoweredRoutine:
-        """A call of the routine `trig_quartic`, or where rows are refined of `trig_quartic_wide`: two roots
-        that the file's geometry has may be as far beside the circle as it moves the polynomial's value."""
+        """A call of `TRIG_QUARTIC`, or where rows are refined of `TRIG_QUARTIC_WIDE`: two roots that the
+        file's geometry has may be as far beside the circle as it moves the polynomial's value."""
         divisor = leading(g, self.divisor_parts, tolerances)
         if tolerances.error <= ROUNDED:
-            return LoweredRoutine("trig_quartic", self.coefficients, divisor)
+            return LoweredRoutine(TRIG_QUARTIC.name, self.coefficients, divisor)
         wide = g.const(min(tolerances.clamp**0.5, _WIDEST))
-        return LoweredRoutine("trig_quartic_wide", (*self.coefficients, wide), divisor)
+        return LoweredRoutine(TRIG_QUARTIC_WIDE.name, (*self.coefficients, wide), divisor)
 
     def instead(self, g: ExpressionGraph, seed: tuple[Expr, ...]) -> tuple[Expr, ...]:
         """`sin(u - seed) = 0`"""

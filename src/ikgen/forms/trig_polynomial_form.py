@@ -19,6 +19,7 @@ from ikgen.formulas import mathtext as m
 from ikgen.formulas.mathtext import Math
 from ikgen.formulas.notation import angle, show
 from ikgen.model.arrays import Array
+from ikgen.program.routines import TRIG_POLYNOMIAL
 from ikgen.runtime.python.roots.trig_polynomial_roots import trig_polynomial_roots
 
 __all__ = ["CIRCLE", "TrigPolynomial", "most_roots"]
@@ -123,13 +124,13 @@ class TrigPolynomial(Form):
         return [x for n in self.harmonics for x in _multiple(g, n, unknown)]
 
     def lower(self, g: ExpressionGraph, sigma: Expr, tolerances: Tolerances) -> LoweredRoutine:
-        """A call of the routine `trig_polynomial`; where rows are refined, two roots that the file's
+        """A call of `TRIG_POLYNOMIAL`; where rows are refined, two roots that the file's
         geometry has may be as far beside the real ones as it moves the polynomial's value."""
         divisor = leading(g, self.divisor_parts, tolerances)
         touch = min(max(tolerances.clamp**0.5, _TOUCH), _WIDEST)
         numbers = (*self.harmonics, *self.span, touch, self.branches)
         rest = tuple(g.const(float(x)) for x in numbers)
-        return LoweredRoutine("trig_polynomial", (*self.terms, *rest), divisor)
+        return LoweredRoutine(TRIG_POLYNOMIAL.name, (*self.terms, *rest), divisor)
 
     def instead(self, g: ExpressionGraph, seed: tuple[Expr, ...]) -> tuple[Expr, ...]:
         """`sin(n (u - seed)) = 0` with the least harmonic n"""

@@ -42,7 +42,7 @@ def elimination_program(
         found += (f"c{dh.dof + 1}", f"s{dh.dof + 1}")
     slides = sum(not dh.lead_row(j).revolute for j in moving)
     routine = elimination_routine(slides, both=both, coupled=len(dh.rows) > dh.dof)
-    call = Call(routine.name, (*entries, *given), found)
+    call = Call(routine.called, (*entries, *given), found)
     values = [_value(dh, j) for j in moving]
     body: tuple[Statement, ...] = (
         Comment(f"all joints at once: the general {routine.words} elimination"),

@@ -8,6 +8,7 @@ import numpy as np
 
 from ikgen.algebra.expression import Expr
 from ikgen.equations.knowledge import Variable
+from ikgen.errors import PlugInError
 from ikgen.forms.form import Form
 from ikgen.forms.lowered_form import ROUNDED, LoweredForm, LoweredRoutine, natural_size
 from ikgen.kinematics.whole_turns import middle_of
@@ -20,6 +21,7 @@ from ikgen.lowering.program_inputs import bind_joints, bind_pose, seed_values
 from ikgen.lowering.serialize import serialize
 from ikgen.program.inputs import HeldValue
 from ikgen.program.liveness import trimmed
+from ikgen.program.routines import ROUTINES, Routine
 from ikgen.program.statements import Comment, Program
 from ikgen.solver.choice import Step
 from ikgen.solver.solution_graph import SolutionGraph
@@ -108,7 +110,8 @@ def _routine(work: Placement, v: Variable, form: Form, lowered: LoweredRoutine, 
     for e in arguments:
         work.place(e)
     atoms = work.knowledge.variables.pair(v.combination)
-    work.levels.append(LoweredLevel(form.branches, None, (lowered.routine, arguments, atoms)))
+    call = (_known_routine(form, lowered.routine), arguments, atoms)
+    work.levels.append(LoweredLevel(form.branches, None, call))
     work.place(Comment(text))
     for atom, x in zip(atoms, "cs", strict=True):
         work.names[atom.id] = local_name(f"{x}{v.index}")
@@ -117,6 +120,17 @@ def _routine(work: Placement, v: Variable, form: Form, lowered: LoweredRoutine, 
     slope = work.slope(v, form)
     if slope is not None:
         work.note_root(atoms, form.pattern(work.g, atoms)[0], slope)
+
+
+def _known_routine(form: Form, name: str) -> Routine:
+    """The routine of a name. Raises `PlugInError` where there is none that finds roots of one unknown."""
+    known = {one.name: one for one in ROUTINES.values() if one.finds_roots}
+    if name not in known:
+        raise PlugInError(
+            f"{form.words} is to be solved by a routine '{name}', which ikgen does not have",
+            hint=f"there is: {', '.join(known)}",
+        )
+    return known[name]
 
 
 def _or_seed(work: Placement, v: Variable, form: Form, lowered: LoweredRoutine) -> tuple[Expr, ...]:

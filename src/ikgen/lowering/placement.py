@@ -19,6 +19,7 @@ from ikgen.lowering.double_roots import DoubleRoots, either
 from ikgen.lowering.file_digits import FileDigits
 from ikgen.lowering.rounding import Rounding
 from ikgen.program.inputs import Input
+from ikgen.program.routines import Routine
 from ikgen.program.statements import Comment, Let
 from ikgen.solver.choice import Step
 from ikgen.solver.solution_graph import SolutionGraph
@@ -50,7 +51,7 @@ class LoweredLevel:
 
     branches: int
     sigma: Expr | None = None
-    call: tuple[str, tuple[Expr, ...], tuple[Expr, ...]] | None = None
+    call: tuple[Routine, tuple[Expr, ...], tuple[Expr, ...]] | None = None
     solved: tuple[Expr, ...] = ()
     items: list[Expr | Comment | Requirement] = field(default_factory=list)
 

@@ -71,7 +71,7 @@ def _branches(
 ) -> Iterator[dict[str, float]]:
     if level.call is not None:
         arguments = [evaluate(a, names) for a in level.call.arguments]
-        for root in routines[level.call.routine](*arguments):
+        for root in routines[level.call.routine.name](*arguments):
             yield {**names, **dict(zip(level.call.names, root, strict=True))}
     elif level.sigma is not None:
         yield {**names, level.sigma: 1.0}

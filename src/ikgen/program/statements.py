@@ -13,6 +13,7 @@ from typing import TypeVar
 from ikgen.model.angle_function import AngleFunction
 from ikgen.program.inputs import Input
 from ikgen.program.ops import Operand
+from ikgen.program.routines import Routine
 
 __all__ = [
     "Call", "Comment", "Constant", "Entries", "JointOutput", "Let", "Level", "Program", "Require",
@@ -52,28 +53,10 @@ Statement = Let | Require | Comment
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """A bigger routine that gives the branches of a level: `names` are set for each of its roots.
+    """A bigger routine that gives the branches of a level: `names` are set for each of its roots, as the
+    routine says. `ikgen.program.routines.ROUTINES` are all that there are."""
 
-    | routine | arguments | names |
-    |---|---|---|
-    | `trig_quartic` | a2, b2, a1, b1, a0 | c, s: cosine and sine of a root |
-    | `trig_quartic_wide` | these, and the largest imaginary part (rad) of roots that count | the same |
-    | `trig_polynomial` | see `TrigPolynomial.lower` | the same |
-    | `general_6r` | pose, held joints | six revolute joints |
-    | `one_slide` | pose, held joints | five revolute joints and a slide |
-    | `one_slide_both` | pose, held joints | the same where half angles of one angle leave no rank |
-    | `two_slides` | pose, held joints | four revolute joints and two slides |
-    | `three_slides` | pose, held joints | three revolute joints and three slides |
-    | `coupled_6r` | pose, held joints | six revolute joints, of which one moves several axes |
-    | `coupled_both` | pose, held joints | the same where half angles of one angle leave no rank |
-
-    Roots are those of a2 cos 2u + b2 sin 2u + a1 cos u + b1 sin u + a0. Pose: the entries r11, r12, r13,
-    px, r21, ... of its upper three rows. Joints, base to tip: cosine and sine of the DH variable of each
-    that turns, the variable of each slide; last the turn about the tool's axis where the task leaves that
-    open. What eliminations have to know of the arm besides is `SolverModule.plan`.
-    """
-
-    routine: str
+    routine: Routine
     arguments: tuple[Operand, ...]
     names: tuple[str, ...]
 
@@ -145,6 +128,12 @@ class Program:
         for level in self.levels:
             count *= level.branches
         return count
+
+    @property
+    def routines(self) -> tuple[Routine, ...]:
+        """The routines that are called, each once, by name."""
+        called = {level.call.routine for level in self.levels if level.call is not None}
+        return tuple(sorted(called, key=lambda one: one.name))
 
     def inputs_of(self, kind: type[T]) -> tuple[T, ...]:
         """The inputs of a kind, in order."""

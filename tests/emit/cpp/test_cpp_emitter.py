@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from functools import cache
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -15,7 +16,7 @@ from ikgen.elimination.elimination_table import ELIMINATIONS
 from ikgen.emit.cpp.cpp_emitter import _headers, emit_header
 from ikgen.emit.solver_module import SolverModule
 from ikgen.model.dh import ARM_ANGLE_OPTION
-from ikgen.program.statements import Call
+from ikgen.program.routines import ROUTINES, Routine
 
 
 @cache
@@ -64,7 +65,22 @@ def test_a_header_names_what_is_held_and_where_its_joints_are(held: int) -> None
     assert (told in head) == (places in head) == ("kFreeNames" in head) == bool(held)
 
 
-def test_all_routines_are_told_to_those_who_write_emitters() -> None:
-    told = re.findall(r"^ *\| `(\w+)` \|", Call.__doc__ or "", re.MULTILINE)
-    roots = {path.stem for path in Path(ikgen.runtime.__file__).parent.glob("cpp/roots/trig_*.hpp")}
-    assert set(told) == roots | {row.name for row in ELIMINATIONS} and len(told) == 10
+@pytest.mark.parametrize("routine", ROUTINES.values(), ids=ROUTINES)
+def test_each_routine_is_where_its_row_says(routine: Routine) -> None:
+    header = (Path(ikgen.runtime.__file__).parent / "cpp" / routine.cpp_header).read_text()
+    if routine.finds_roots:
+        module = import_module(f"ikgen.runtime.python.{routine.python_module}")
+        assert callable(getattr(module, f"{routine.name}_branches"))
+        assert callable(getattr(module, f"{routine.name}_lanes"))
+        assert re.search(rf" {routine.name}_branches[({{]", header) and not routine.cpp_class
+    else:
+        assert f"struct {routine.cpp_class} " in header
+        assert routine in {row.called for row in ELIMINATIONS}
+
+
+def test_there_is_a_row_for_each_header_of_roots() -> None:
+    paths = Path(ikgen.runtime.__file__).parent.glob("cpp/roots/trig_*.hpp")
+    assert {path.stem for path in paths} == {
+        one.name for one in ROUTINES.values() if one.finds_roots
+    }
+    assert len(ROUTINES) == 10 and all(one.takes and one.gives for one in ROUTINES.values())

@@ -23,7 +23,7 @@ def body_lines(module: SolverModule) -> list[str]:
     for index, level in enumerate(program.levels):
         if level.call is not None:
             raise UsageError(
-                f"the Rust emitter has no routine '{level.call.routine}', which this arm needs",
+                f"the Rust emitter has no routine '{level.call.routine.name}', which this arm needs",
                 hint="emit python or cpp",
             )
         if index:

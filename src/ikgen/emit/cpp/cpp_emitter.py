@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from ikgen.elimination.elimination_table import ELIMINATIONS
 from ikgen.emit.blanks import blank_functions, blanks
 from ikgen.emit.cpp.cpp_language import CONSTANT, comment, declared, literal, number
 from ikgen.emit.cpp.cpp_policy import policy_lines
@@ -34,6 +33,10 @@ _SYSTEM = ("array", "cstddef", "Eigen/Core", "Eigen/Geometry")
 
 _INCLUDES, _POLICY, _RUNTIME = "\2includes\2", "\2RefineStage\2", "\2runtime\2"
 """Where these go once it is known what the rest of the text needs; no name has such characters."""
+
+
+_PARALLEL_HEADER, _PARALLEL_CLASS = "elimination/parallel_6r.hpp", "Parallel6r"
+"""The elimination about two parallel axes, which calls the general one where it has doubts."""
 
 
 def _columns(module: SolverModule) -> str:
@@ -175,14 +178,14 @@ def _blocks(module: SolverModule) -> tuple[int, ...]:
 
 def _headers(module: SolverModule) -> list[str]:
     """The runtime's headers that the module needs, without those that they include."""
-    routines = sorted({lv.call.routine for lv in module.program.levels if lv.call is not None})
+    routines = module.program.routines
     needed = [
         "arrays/lane_angle.hpp",
         "solving/single_solve.hpp" if _careful(module) else "solving/lane_solve.hpp",
     ]
     needed += ["roots/routine_roots.hpp"] * bool(routines)
-    needed += [_header_of(name) for name in routines]
-    needed += ["elimination/parallel_6r.hpp"] * bool(_parallel_kind(module))
+    needed += [one.cpp_header for one in routines]
+    needed += [_PARALLEL_HEADER] * bool(_parallel_kind(module))
     needed += ["arm/tool_joint.hpp"] * (module.plan is not None and module.plan.tool is not None)
     needed += ["newton/lane_refinement.hpp"] * _newton(module)
     if module.dh.arm_angle:
@@ -195,25 +198,17 @@ def _headers(module: SolverModule) -> list[str]:
     return [*needed, searches[min(len(module.held), 2)]]
 
 
-def _header_of(routine: str) -> str:
-    """The runtime's header that has a routine."""
-    if routine == "general_6r":  # the header of that name is of its numbers alone
-        return "elimination/general_6r_arm.hpp"
-    folder = "elimination" if any(row.name == routine for row in ELIMINATIONS) else "roots"
-    return f"{folder}/{routine}.hpp"
-
-
 def _elimination(module: SolverModule) -> dict[str, object]:
     """What the templates say of an elimination: its routine, class, and the numbers that it gives a row."""
     calls = [level.call for level in module.program.levels if level.call is not None]
     if module.plan is None:
         return {"routine": ""}
-    name = "parallel_6r" if _parallel_kind(module) else calls[0].routine
+    call, kind = calls[0], _parallel_kind(module)
     return {
-        "routine": calls[0].routine,
-        "elimination": "".join(part.capitalize() for part in name.split("_")),
-        "parallel_kind": _parallel_kind(module),
-        "numbers": len(calls[0].names),
+        "routine": call.routine.name,
+        "elimination": _PARALLEL_CLASS if kind else call.routine.cpp_class,
+        "parallel_kind": kind,
+        "numbers": len(call.names),
         "all_turn": all(module.plan.turning),
     }
 

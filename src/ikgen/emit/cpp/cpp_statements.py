@@ -94,7 +94,7 @@ class ProgramText:
         roots = f"roots_{index}"
         self._statement(
             f"const auto {roots} = roots_of<{branches}, {len(call.names)}, {width} * P>"
-            f"({call.routine}_branches, {arguments});"
+            f"({call.routine.name}_branches, {arguments});"
         )
         for k, name in enumerate(call.names):
             if name in self.live:

@@ -55,7 +55,7 @@ def shell_values(module: SolverModule) -> dict[str, Any]:
         "constants": [(c.name, expression(SCALAR, c.value)) for c in program.constants],
         "scalar": scalar_lines(module),
         "batch": batch_lines(module),
-        "routines": sorted({lv.call.routine for lv in program.levels if lv.call is not None}),
+        "routines": program.routines,
         "finder": _finder(module),
         "seeds": _seed_rows(module),
         "shape": [level.branches for level in program.levels[1:]],

@@ -62,7 +62,7 @@ def _scalar_row(module: SolverModule) -> list[str]:
 def _loop(level: Level) -> str:
     if level.call is not None:
         arguments = ", ".join(expression(SCALAR, a) for a in level.call.arguments)
-        return f"for {', '.join(level.call.names)} in _{level.call.routine}_branches({arguments}):"
+        return f"for {', '.join(level.call.names)} in _{level.call.routine.name}_branches({arguments}):"
     return f"for {level.sigma} in (1.0, -1.0):"
 
 
@@ -79,7 +79,7 @@ def batch_lines(module: SolverModule) -> list[str]:
         if level.call is not None:
             arguments = ", ".join(expression(BATCH, a) for a in level.call.arguments)
             names = ", ".join(level.call.names)
-            call = f"_{level.call.routine}_lanes(({arguments}), {index - 1})"
+            call = f"_{level.call.routine.name}_lanes(({arguments}), {index - 1})"
             lines.append(f"{names}, found = {call}")
             lines.append("valid = valid & found")
         for statement in level.body:
