@@ -15,7 +15,7 @@ from ikgen.forms.lowered_form import LoweredForm, Tolerances
 from ikgen.forms.quadratic_form import Quadratic
 from ikgen.forms.sine_cosine_form import SineCosine
 from ikgen.forms.tangent_form import Tangent
-from ikgen.lowering.fallbacks import _pick, choose_form
+from ikgen.lowering.fallbacks import choose_form, picked
 from ikgen.lowering.placement import Placement, Requirement
 from ikgen.solver.solution_graph import SolutionGraph
 from ikgen.solver.solve import solve_chain
@@ -207,8 +207,8 @@ def test_of_two_conditions_one_is_taken_where_a_third_holds(
     }
     here = (1.0, 0.0, 1.0, 0.0)
     condition = b.g.binary("gt", b.given(here), b.g.const(0.5))
-    assert _pick(b.g, None, flags[mine], flags[other]) is flags[mine]
-    found = _pick(b.g, condition, flags[mine], flags[other])
+    assert picked(b.g, None, flags[mine], flags[other]) is flags[mine]
+    found = picked(b.g, condition, flags[mine], flags[other])
     one, two = (np.broadcast_to(FLAGS[name], 4).astype(bool) for name in (mine, other))
     shown = np.full(4, found) if isinstance(found, bool) else found.probe[:4] > 0.5
     assert shown.tolist() == np.where(np.array(here) > 0.5, one, two).tolist()

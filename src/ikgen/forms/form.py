@@ -15,7 +15,7 @@ from typing import ClassVar
 from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.forms.formula import Formula, FormulaWriter, plain_formula
-from ikgen.forms.lowered_form import LoweredForm, LoweredRoutine, Tolerances
+from ikgen.forms.lowered_form import LoweredBranches, LoweredForm, LoweredRoutine, Tolerances
 from ikgen.formulas.mathtext import Math
 from ikgen.model.arrays import Array
 
@@ -108,8 +108,9 @@ class Form(ABC):
     @abstractmethod
     def lower(
         self, g: ExpressionGraph, sigma: Expr, tolerances: Tolerances
-    ) -> LoweredForm | LoweredRoutine:
-        """The form over the graph; `sigma` (1 or -1) chooses the branch of forms with two."""
+    ) -> LoweredForm | LoweredBranches | LoweredRoutine:
+        """The form over the graph; `sigma` (1 or -1) chooses the branch of forms with two. Those with more
+        give each branch by itself, or are solved by a routine."""
 
     def instead(self, g: ExpressionGraph, seed: tuple[Expr, ...]) -> tuple[Expr, ...]:
         """Coefficients of the same form whose solution is the seed's value, for a form solved by a

@@ -13,6 +13,7 @@ from ikgen.algebra.expression_graph import ExpressionGraph
 __all__ = [
     "ROUNDED",
     "Divisor",
+    "LoweredBranches",
     "LoweredForm",
     "LoweredRoutine",
     "Tolerances",
@@ -196,6 +197,18 @@ class LoweredForm:
     def regular(self) -> Expr | None:
         """Condition that the divisor does not vanish."""
         return self.divisor.regular
+
+
+@dataclass(frozen=True, slots=True)
+class LoweredBranches:
+    """A form of any number of branches, each with expressions of its own: `values` and `guards` are per
+    branch what `LoweredForm` has for both signs; the divisor, and what is `under` a square root, are the
+    same for all."""
+
+    values: tuple[tuple[Expr, ...], ...]
+    divisor: Divisor
+    guards: tuple[Expr | None, ...]
+    under: tuple[Expr, Expr] | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,7 +11,7 @@ from ikgen.forms.lowered_form import ROUNDED, Divisor, LoweredForm, natural_size
 from ikgen.lowering.placement import Placement
 from ikgen.lowering.program_inputs import seed_values
 
-__all__ = ["choose_form"]
+__all__ = ["Flag", "choose_form", "picked"]
 
 WELL_CONDITIONED = 1e-3
 """Relative size of a divisor below which a fallback is taken in its form's place."""
@@ -23,7 +23,7 @@ conditioned: hardly a digit of it is the file's."""
 Flag = bool | Expr
 
 
-def _pick(g: ExpressionGraph, here: Expr | None, mine: Flag, other: Flag) -> Flag:
+def picked(g: ExpressionGraph, here: Expr | None, mine: Flag, other: Flag) -> Flag:
     """`mine` where the condition `here` holds (None: always), `other` elsewhere."""
     if here is None or mine is other:
         return mine
@@ -67,13 +67,13 @@ def choose_form(
     free: Flag = True
     for form in reversed(forms):
         here = form.regular
-        guard = _pick(g, here, True if form.guard is None else form.guard, guard)
-        single = _pick(g, here, form.branches == 1, single)
+        guard = picked(g, here, True if form.guard is None else form.guard, guard)
+        single = picked(g, here, form.branches == 1, single)
         clear = form.divisor.clear
         if clear is None or clear is here:  # never taken near a continuum
-            free = _pick(g, here, False, free)
+            free = picked(g, here, False, free)
         else:
-            free = _pick(g, here, g.unary("not", clear), free)
+            free = picked(g, here, g.unary("not", clear), free)
         if here is not None:
             both = zip(form.values, values, strict=True)
             values = tuple(g.select(here, mine, other) for mine, other in both)

@@ -19,6 +19,7 @@ from ikgen.lowering.joint_values import joint_expression
 from ikgen.lowering.placement import LoweredLevel, Placement, local_name
 from ikgen.lowering.program_inputs import bind_joints, bind_pose, seed_values
 from ikgen.lowering.serialize import serialize
+from ikgen.lowering.sign_levels import add_levels, as_one_each, more_signs
 from ikgen.program.inputs import HeldValue
 from ikgen.program.liveness import trimmed
 from ikgen.program.routines import ROUTINES, Routine
@@ -57,7 +58,7 @@ def _coarse(work: Placement, values: list[tuple[int, Expr]]) -> bool:
 
 
 def _step(work: Placement, index: int, step: Step) -> None:
-    """One solved unknown: by a form whose branches sigma tells apart, or by a routine."""
+    """One solved unknown: by a form whose branches signs tell apart, or by a routine."""
     g = work.g
     v = step.candidate.unknown
     text = f"{v.text}: {step.candidate.leaf}, from {_labels(step)}"
@@ -69,15 +70,15 @@ def _step(work: Placement, index: int, step: Step) -> None:
     if isinstance(lowered[0], LoweredRoutine):
         _routine(work, v, forms[0], lowered[0], text)
         return
-    if sigma is not g.one:
-        work.levels.append(LoweredLevel(2, sigma))
-        work.level_of[sigma.id] = len(work.levels) - 1
-        work.names[sigma.id] = f"sigma_{v.index}"
+    signs: tuple[Expr, ...] = () if sigma is g.one else (sigma,)
+    if step.branches > 2:
+        signs = more_signs(g, index, step.branches)
+    add_levels(work, v, signs)
     work.place(Comment(text))
-    alternatives = [one for one in lowered if isinstance(one, LoweredForm)]
+    alternatives = as_one_each(g, forms, lowered, signs)
     work.define(v, choose_form(work, v, alternatives, sigma))
-    if sigma is not g.one:
-        work.levels[-1].solved = work.atoms_of(v)
+    for level in work.levels[len(work.levels) - len(signs) :]:
+        level.solved = work.atoms_of(v)
     if v.kind == "angle" and (
         not all(form.on_circle for form in forms) or _given_way(work, alternatives)
     ):

@@ -64,7 +64,8 @@ class Call:
 @dataclass(frozen=True, slots=True)
 class Level:
     """One nesting level: `branches` alternatives, told apart by `sigma` = +1, -1 or by a `call`; `solved`
-    are the names of what sigma decides (a cosine and sine, or a distance): equal where branches meet."""
+    are the names of what sigma decides (a cosine and sine, or a distance): equal where branches meet. What
+    several sigmas decide is solved at the level of the last."""
 
     branches: int
     sigma: str | None

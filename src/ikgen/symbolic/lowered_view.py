@@ -13,7 +13,7 @@ from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.errors import IkgenError
 from ikgen.forms.form import Form
-from ikgen.forms.lowered_form import LoweredForm, LoweredRoutine, Tolerances
+from ikgen.forms.lowered_form import LoweredBranches, LoweredForm, LoweredRoutine, Tolerances
 from ikgen.symbolic.exact_numbers import exact_number
 from ikgen.symbolic.expression_view import ARITHMETIC
 
@@ -51,6 +51,8 @@ class LoweredView:
         lowered = self.form.lower(self.graph, self.sigma, Tolerances())
         if isinstance(lowered, LoweredRoutine):
             raise NotAlgebraicError(f"the routine {lowered.routine} of the emitted code solves it")
+        if isinstance(lowered, LoweredBranches):
+            raise NotAlgebraicError("it gives its branches one by one")
         self.lowered: LoweredForm = lowered
 
     def _coefficient(self, name: str, kind: Kind, values: Any) -> Expr:

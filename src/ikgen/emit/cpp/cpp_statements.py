@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import textwrap
+from collections.abc import Sequence
 
 from ikgen.emit.blanks import blank_functions
 from ikgen.emit.cpp.cpp_language import CONSTANT, CPP, LINE, comment, number
@@ -81,7 +82,7 @@ class ProgramText:
                 self._fork(index, level, width)
             width *= level.branches
             self._body(index, level)
-            self._meeting(level, width)
+            self._meeting(level, width, self.program.levels[index + 1 :])
 
     def _fork(self, index: int, level: Level, width: int) -> None:
         if level.call is not None:
@@ -139,9 +140,12 @@ class ProgramText:
         self._let(name, f"{self.real} & {condition}" if self.real else condition)
         self.real = name
 
-    def _meeting(self, level: Level, width: int) -> None:
-        """Whether the two branches of a level meet, which makes equal rows."""
-        if level.solved:
+    def _meeting(self, level: Level, width: int, inner: Sequence[Level]) -> None:
+        """Whether the two branches of a level meet, which makes equal rows. What several signs decide is
+        known at the `inner` level of the last: its rows are always compared."""
+        if level.solved and any(level.solved == one.solved for one in inner):
+            self.flags["meeting"].append(f"({level.sigma} > -2.0)")
+        elif level.solved:
             names = ", ".join(level.solved)
             self.flags["meeting"].append(f"meeting<Policy, {width} * P>({names})")
 
