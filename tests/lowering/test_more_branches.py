@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import product
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 import pytest
-from tests.support.solving import NO_COMPILER, import_text
+from tests.support.solving import NO_COMPILER, import_text, module_from
+from tests.support.twist_arm import REACH, TWIST
 
 from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.equations.knowledge import Knowledge, PolynomialEquation, Variable
-from ikgen.equations.matching import in_harmonics
 from ikgen.errors import PlugInError
 from ikgen.forms.form import Form
 from ikgen.forms.lowered_form import (
@@ -23,8 +23,6 @@ from ikgen.forms.lowered_form import (
     LoweredBranches,
     LoweredForm,
     Tolerances,
-    divisor_of,
-    natural_size,
 )
 from ikgen.generation.generate import generate
 from ikgen.lowering.sign_levels import as_one_each, more_signs
@@ -33,62 +31,10 @@ from ikgen.records.request import Outputs, Request
 from ikgen.solver import leaves
 from ikgen.solver.candidate import Candidate
 from ikgen.solver.leaves import LEAVES, Leaf
-from ikgen.tasks import TASKS, Task
+from ikgen.tasks import TASKS
 
-REACH = Task("reach", frozenset({"px", "pz"}), 2, "position in the base's x-z plane")
-TWIST = """
-<robot name="twist">
-  <link name="base"/><link name="rail"/><link name="first"/><link name="second"/><link name="tip"/>
-  <joint name="slide" type="prismatic"><parent link="base"/><child link="rail"/>
-    <axis xyz="0 0 1"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
-  <joint name="turn" type="revolute"><parent link="rail"/><child link="first"/>
-    <axis xyz="0 -1 0"/><limit lower="-3.1" upper="3.1" effort="1" velocity="1"/></joint>
-  <joint name="follower" type="revolute"><parent link="first"/><child link="second"/>
-    <axis xyz="0 0 1"/><limit lower="-3.1" upper="3.1" effort="1" velocity="1"/>
-    <mimic joint="turn"/></joint>
-  <joint name="flange" type="fixed"><parent link="second"/><child link="tip"/>
-    <origin xyz="0.4 0 0"/></joint>
-</robot>
-"""
-"""Two axes at right angles that turn alike: the tip is at x = 0.4 cos(u)^2."""
-
-
-@dataclass(frozen=True, slots=True)
-class DoubleAngle(Form):
-    """`a cos(2u) + b sin(2u) + c = 0`"""
-
-    name: ClassVar[str] = "double angle"
-    branches: ClassVar[int] = 4
-    a: Expr
-    b: Expr
-    c: Expr
-
-    def divisor(self, c: Sequence[Array], z: Sequence[float]) -> Array:
-        return np.stack(c[:2]) / max(z[:2])
-
-    def discriminant(self) -> Array:
-        a, b, c = self.probe
-        return np.asarray((a * a + b * b - c * c) / (a * a + b * b))
-
-    def values(self, c: Sequence[Array]) -> list[tuple[Array, ...]]:
-        swing = np.arccos(-c[2] / np.hypot(c[0], c[1]))
-        middle = np.arctan2(c[1], c[0])
-        turns = [(middle + s * swing) / 2 + t for s in (1, -1) for t in (0.0, np.pi)]
-        return [(np.cos(t), np.sin(t)) for t in turns]
-
-    def lower(self, g: ExpressionGraph, sigma: Expr, tolerances: Tolerances) -> LoweredBranches:
-        square = g.add(g.square(self.a), g.square(self.b))
-        under = g.sub(square, g.square(self.c))
-        divisor = divisor_of(g, square, tolerances, power=2)
-        root, values = g.sqrt(under), []
-        for w in (root, g.neg(root)):
-            c = g.div(g.sub(g.neg(g.mul(self.a, self.c)), g.mul(self.b, w)), divisor.value)
-            s = g.div(g.sub(g.mul(self.a, w), g.mul(self.b, self.c)), divisor.value)
-            half = [g.sqrt(g.mul(g.const(0.5), x)) for x in (g.add(g.one, c), g.sub(g.one, c))]
-            half[1] = g.select(g.binary("gt", s, g.zero), half[1], g.neg(half[1]))
-            values += [(half[0], half[1]), (g.neg(half[0]), g.neg(half[1]))]
-        guard = tolerances.guard(g, under, natural_size(square), square)
-        return LoweredBranches(tuple(values), divisor, (guard,) * 4, (under, square))
+EXAMPLE = module_from(Path(__file__).resolve().parents[2] / "examples/plugin_leaf/double_angle.py")
+DoubleAngle: Any = EXAMPLE.DoubleAngle
 
 
 class Twice(DoubleAngle):
@@ -123,27 +69,23 @@ class Fewer(DoubleAngle):
         return replace(found, guards=found.guards[:2])
 
 
-def leaf(form: type[DoubleAngle]) -> Leaf:
+def leaf(form: type[Form]) -> Leaf:
+    """The example's leaf, with another form of the same coefficients."""
+
     def find(
         equations: Sequence[PolynomialEquation], unknown: Variable, knowledge: Knowledge
     ) -> list[Candidate]:
-        out, zero = [], knowledge.graph.zero
-        for e, h, _ in in_harmonics(equations, unknown):
-            if (2, "c") in h and not {(1, "c"), (1, "s")} & set(h):
-                made = form(h[2, "c"], h.get((2, "s"), zero), h.get((0, "c"), zero))
-                out.append(Candidate(unknown, form.name, made, e.sources))
-        return out
+        found = EXAMPLE.DOUBLE_ANGLE.find(equations, unknown, knowledge)
+        return [replace(one, form=form(*one.coefficients)) for one in found]
 
     return Leaf(form.name, find)
 
 
 @pytest.fixture
-def twist(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> Callable[[type[DoubleAngle]], Request]:
+def twist(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Callable[[type[Form]], Request]:
     """The arm, whose turn a leaf with this form solves."""
 
-    def request(form: type[DoubleAngle]) -> Request:
+    def request(form: type[Form]) -> Request:
         own = [one for one in LEAVES if one.name not in ("quartic", "trigonometric polynomial")]
         monkeypatch.setattr(leaves, "LEAVES", (*own, leaf(form)))
         monkeypatch.setattr("ikgen.tasks.TASKS", (*TASKS, REACH))
@@ -156,9 +98,9 @@ def twist(
 
 @pytest.mark.parametrize(("form", "most"), [(DoubleAngle, 4), (Twice, 8)])
 def test_all_branches_are_emitted_and_verified(
-    form: type[DoubleAngle],
+    form: type[Form],
     most: int,
-    twist: Callable[[type[DoubleAngle]], Request],
+    twist: Callable[[type[Form]], Request],
     tmp_path: Path,
 ) -> None:
     languages = ("python",) if NO_COMPILER else ("python", "cpp")
@@ -181,9 +123,9 @@ def test_all_branches_are_emitted_and_verified(
     ],
 )
 def test_branches_that_are_not_given_are_refused(
-    form: type[DoubleAngle],
+    form: type[Form],
     message: str,
-    twist: Callable[[type[DoubleAngle]], Request],
+    twist: Callable[[type[Form]], Request],
     tmp_path: Path,
 ) -> None:
     with pytest.raises(PlugInError, match=message) as refused:

@@ -30,7 +30,7 @@ _SAID = {
 }
 
 
-_ELSEWHERE = {"plugin_rust"}  # tests/conformance/test_plugin_rust.py
+_ELSEWHERE = {"plugin_leaf", "plugin_rust", "plugin_task"}  # tests/conformance/test_plugin_*.py
 
 
 def test_every_example_is_run() -> None:

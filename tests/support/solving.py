@@ -44,9 +44,14 @@ def module_of(dh: DHChain, graph: SolutionGraph, *, name: str = "arm") -> Solver
 
 def import_text(text: str, folder: Path) -> ModuleType:
     """A module from its text."""
-    name = f"emitted_{next(_count)}_ik"
-    path = folder / f"{name}.py"
+    path = folder / f"emitted_{next(_count)}_ik.py"
     path.write_text(text)
+    return module_from(path)
+
+
+def module_from(path: Path) -> ModuleType:
+    """The module of a file, which no import finds."""
+    name = path.stem
     spec = importlib.util.spec_from_file_location(name, path)
     assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)
