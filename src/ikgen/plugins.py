@@ -11,28 +11,17 @@ from typing import Any, TypeVar
 
 from ikgen.errors import IkgenError, PlugInError
 
-__all__ = ["GROUPS", "PlugIn", "PlugInGroup", "blaming", "find_plug_in", "named_object", "plug_ins"]
-
-
-@dataclass(frozen=True, slots=True)
-class PlugInGroup:
-    """What the entries of a group are, in words and by their class ("module:name"); `own` is ikgen's list
-    of those that are found by name ("": others than ikgen's are found otherwise)."""
-
-    words: str
-    kind: str
-    own: str = ""
+__all__ = ["GROUPS", "PlugIn", "blaming", "find_plug_in", "named_object", "plug_ins"]
 
 
 GROUPS = {
-    "ikgen.importers": PlugInGroup("importer", "ikgen.importers:Importer"),  # found by suffix
-    "ikgen.emitters": PlugInGroup("emitter", "ikgen.generation.emitters:Emitter", "EMITTERS"),
-    "ikgen.leaves": PlugInGroup("leaf", "ikgen.solver.leaves:Leaf"),  # all are taken
-    "ikgen.tasks": PlugInGroup("task", "ikgen.tasks:Task", "TASKS"),
-    "ikgen.trees": PlugInGroup(
-        "behavior tree", "ikgen.solver.behavior_tree:Tree"
-    ),  # takes ikgen's place
+    "ikgen.importers": "importer",  # found by suffix
+    "ikgen.emitters": "emitter",
+    "ikgen.leaves": "leaf",  # all are taken
+    "ikgen.tasks": "task",
+    "ikgen.trees": "behavior tree",  # takes ikgen's place
 }
+"""What an entry of each group is, in words."""
 
 T = TypeVar("T")
 
@@ -51,7 +40,7 @@ class PlugIn:
     @property
     def words(self) -> str:
         """What it is, for messages."""
-        return f"{GROUPS[self.group].words} '{self.name}' of {self.package} ({self.target})"
+        return f"{GROUPS[self.group]} '{self.name}' of {self.package} ({self.target})"
 
     def load(self, kind: type[T]) -> T:
         """The object of the entry point, or what it returns if it is a function without arguments.
@@ -99,7 +88,7 @@ def find_plug_in(group: str, name: str) -> PlugIn | None:
     if len(found) > 1:
         packages = " and ".join(one.package for one in found)
         raise PlugInError(
-            f"{GROUPS[group].words} '{name}' is offered by {packages}",
+            f"{GROUPS[group]} '{name}' is offered by {packages}",
             hint="keep one of the packages",
         )
     return found[0] if found else None

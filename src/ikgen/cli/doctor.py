@@ -41,7 +41,7 @@ def _record(needed: list[Thing], optional: list[Thing], others: list[Offer]) -> 
         "tools": {thing.name: thing.found for thing in optional},
         "plug_ins": [
             {
-                "kind": GROUPS[o.plug_in.group].words,
+                "kind": GROUPS[o.plug_in.group],
                 "name": o.plug_in.name,
                 "target": o.plug_in.target,
                 "package": o.plug_in.package,
@@ -63,7 +63,7 @@ def _text(needed: list[Thing], optional: list[Thing], others: list[Offer]) -> st
     if others:
         listed = [
             (
-                f"{GROUPS[o.plug_in.group].words} '{o.plug_in.name}'",
+                f"{GROUPS[o.plug_in.group]} '{o.plug_in.name}'",
                 o.plug_in.package,
                 o.plug_in.target,
             )

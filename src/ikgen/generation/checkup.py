@@ -6,7 +6,6 @@ import shlex
 import shutil
 from collections.abc import Callable
 from dataclasses import dataclass
-from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
@@ -132,9 +131,25 @@ def _problem(plug_in: PlugIn) -> str:
 
 
 def _registry(group: str) -> tuple[type, set[str]]:
-    """What an entry of a group must be, and the names by which ikgen finds its own."""
-    row = GROUPS[group]
-    name, kind = row.kind.split(":")
-    module = import_module(name)
-    own = getattr(module, row.own) if row.own else ()
-    return getattr(module, kind), {one.name for one in own}
+    """What an entry of a group must be, and the names by which ikgen finds its own; imported as asked for,
+    as packages that they need may be what is missing."""
+    match group:
+        case "ikgen.importers":
+            from ikgen.importers import Importer
+
+            return Importer, set()
+        case "ikgen.emitters":
+            from ikgen.generation.emitters import EMITTERS, Emitter
+
+            return Emitter, {one.name for one in EMITTERS}
+        case "ikgen.leaves":
+            from ikgen.solver.leaves import Leaf
+
+            return Leaf, set()
+        case "ikgen.tasks":
+            from ikgen.tasks import TASKS, Task
+
+            return Task, {one.name for one in TASKS}
+    from ikgen.solver.behavior_tree import Tree
+
+    return Tree, set()
