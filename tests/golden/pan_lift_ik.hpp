@@ -666,6 +666,13 @@ template <class Arm> struct MotionChain {
     return T;
   }
 
+  static void jacobian(const double* q, double* out) noexcept {
+    double J[6][Arm::kDof];
+    forward(q, J);
+    for (int j = 0; j < Arm::kDof; ++j)
+      for (int r = 0; r < 6; ++r) out[6 * j + r] = J[r][j];
+  }
+
  private:
   static constexpr auto kAll = std::make_index_sequence<static_cast<std::size_t>(kCount)>();
 
@@ -3173,6 +3180,14 @@ template <class Arm> struct PoseReading {
     return true;
   }
 
+  template <class Out> static bool readable(const Eigen::Isometry3d& pose, Eigen::Isometry3d& clean, Out& out) noexcept {
+    clean = pose;
+    if (PoseReading::clean(clean)) return true;
+    out.count = 0;
+    out.status = refused(pose);
+    return false;
+  }
+
   static typename Arm::Status refused(Eigen::Isometry3d pose) noexcept {
     for (double* x = pose.matrix().data() + 12; x < pose.matrix().data() + 15; ++x)
       if (std::abs(*x) < kInfinity) *x = 0.0;
@@ -3234,13 +3249,8 @@ template <class Arm, template <class> class Way> struct PoseSolver {
   [[gnu::cold, gnu::noinline]] static void clean_and_solve(const Eigen::Isometry3d* poses, int count,
                                                            const Options& options, Solutions* out) noexcept {
     for (; count > 0; --count, ++poses, ++out) {
-      Eigen::Isometry3d clean = *poses;
-      if (PoseReading<Arm>::clean(clean)) {
-        Way<Arm>::template solve<1>(&clean, options, out);
-      } else {
-        out->count = 0;
-        out->status = PoseReading<Arm>::refused(*poses);
-      }
+      Eigen::Isometry3d clean;
+      if (PoseReading<Arm>::readable(*poses, clean, *out)) Way<Arm>::template solve<1>(&clean, options, out);
     }
   }
 };
@@ -3721,11 +3731,8 @@ inline Eigen::Isometry3d forward(const Joints& q) noexcept {
 
 // Geometric Jacobian of the tip in kBaseLink: linear rows (m/s), then angular (rad/s).
 inline Eigen::Matrix<double, 6, kDof> jacobian(const Joints& q) noexcept {
-  double J[6][kDof];
-  detail::MotionChain<detail::Arm>::forward(q.data(), J);
   Eigen::Matrix<double, 6, kDof> out;
-  for (int j = 0; j < kDof; ++j)
-    for (int r = 0; r < 6; ++r) out.data()[6 * j + r] = J[r][j];
+  detail::MotionChain<detail::Arm>::jacobian(q.data(), out.data());
   return out;
 }
 

@@ -22,7 +22,6 @@ __all__ = ["SOURCES", "emit", "emit_derivation", "package_name"]
 
 _FILES = {
     "package.xml": "package.xml",
-    "CMakeLists.txt": "CMakeLists.txt",
     "README.md": "README.md",
     "regenerate.sh": "regenerate.sh",
     "test/solver_test.cpp": "solver_test.cpp",
@@ -71,7 +70,7 @@ def emit(module: SolverModule, chain: Chain | None = None) -> dict[str, str]:
 def _sources(module: SolverModule, package: str) -> dict[str, str]:
     """Relative path -> text of what all packages have, but for their names and the generator's version."""
     out = {}
-    for path in sorted(SOURCES.glob("**/*.[ch]pp")):
+    for path in sorted(SOURCES.glob("**/*.*")):
         if path.name == _OF_HELD and not module.held:
             continue
         place = f"{package}/{path.relative_to(SOURCES).as_posix()}".replace(_STAND_IN, package)

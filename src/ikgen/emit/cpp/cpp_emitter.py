@@ -195,7 +195,8 @@ def _headers(module: SolverModule) -> list[str]:
     needed += [task, "arguments/pose_solver.hpp", "solving/projection.hpp"]
     needed += ["solving/path_following.hpp", *["held/lone_value.hpp"] * bool(module.held)]
     searches = ("solving/ordered_solving.hpp", "held/held_search.hpp", "held/held_grid_search.hpp")
-    return [*needed, searches[min(len(module.held), 2)]]
+    motors = ["solving/motor_values.hpp"] * (module.dh.transmission is not None)
+    return [*needed, searches[min(len(module.held), 2)], *motors]
 
 
 def _elimination(module: SolverModule) -> dict[str, object]:

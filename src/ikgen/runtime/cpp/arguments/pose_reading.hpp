@@ -34,6 +34,15 @@ template <class Arm> struct PoseReading {
     return true;
   }
 
+  // Whether a pose can be read, `clean` then without noise; an answer to one that cannot says why.
+  template <class Out> static bool readable(const Eigen::Isometry3d& pose, Eigen::Isometry3d& clean, Out& out) noexcept {
+    clean = pose;
+    if (PoseReading::clean(clean)) return true;
+    out.count = 0;
+    out.status = refused(pose);
+    return false;
+  }
+
   // The status of what is not clean.
   static typename Arm::Status refused(Eigen::Isometry3d pose) noexcept {
     for (double* x = pose.matrix().data() + 12; x < pose.matrix().data() + 15; ++x)

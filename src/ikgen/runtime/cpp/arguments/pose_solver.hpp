@@ -48,13 +48,8 @@ template <class Arm, template <class> class Way> struct PoseSolver {
   [[gnu::cold, gnu::noinline]] static void clean_and_solve(const Eigen::Isometry3d* poses, int count,
                                                            const Options& options, Solutions* out) noexcept {
     for (; count > 0; --count, ++poses, ++out) {
-      Eigen::Isometry3d clean = *poses;
-      if (PoseReading<Arm>::clean(clean)) {
-        Way<Arm>::template solve<1>(&clean, options, out);
-      } else {
-        out->count = 0;
-        out->status = PoseReading<Arm>::refused(*poses);
-      }
+      Eigen::Isometry3d clean;
+      if (PoseReading<Arm>::readable(*poses, clean, *out)) Way<Arm>::template solve<1>(&clean, options, out);
     }
   }
 };

@@ -75,6 +75,14 @@ template <class Arm> struct MotionChain {
     return T;
   }
 
+  // The geometric Jacobian, columns first.
+  static void jacobian(const double* q, double* out) noexcept {
+    double J[6][Arm::kDof];
+    forward(q, J);
+    for (int j = 0; j < Arm::kDof; ++j)
+      for (int r = 0; r < 6; ++r) out[6 * j + r] = J[r][j];
+  }
+
  private:
   static constexpr auto kAll = std::make_index_sequence<static_cast<std::size_t>(kCount)>();
 
