@@ -50,33 +50,34 @@ class SolvePolicy:
     - `meeting`: how close branches are where their rows are compared.
     - `limit_tolerance`: a row no farther outside a limit (rad or m) is put back on it.
     - `limit_reach`: a row no farther outside a limit (rad or m) is tried on it, by Newton steps.
-    - `tries`, `try_step`: how many values are tried for a joint that a pose leaves free, so far
-      (rad) apart.
+    - `tries`: values tried for a joint that a pose leaves free.
+    - `try_step`: rad from one value that is tried to the next.
     - `singular_below`: smallest singular value below which a refined row is singular.
     - `continuum_below`: smallest singular value below which one is that the closed form marks.
-    - `fold_reach`: smallest singular value below which another solution may be nearer than the closed
-      form tells.
+    - `fold_reach`: smallest singular value below which another row may be near, nearer than the
+      closed form tells.
     - `beside_reach`: smallest singular value below which poses beside are solved as well.
     - `fold`: both over the root of the deviation, where there is one.
     - `anywhere`: `beside_reach` from which on poses beside always are.
-    - `broken_reach`: smallest singular value, over the deviation, below which rounding may have broken a
-      continuum: along it the error is as small as that, and so is its slope.
+    - `broken_reach`: smallest singular value below which rounding may have broken a continuum, over the
+      deviation: along it the error is as small as that, and so is its slope.
     - `farthest_start`: first step (rad or m), at most, of rows that are refined together; others are
       refined one by one.
-    - `contraction`: the most that a further step of theirs may be of the one before.
-    - `least_pivot`: least distance of a joint's derivatives from the span of others'.
-    - `pivot_share`: the most that a first step may be of that distance, up to `fold_product`.
-    - `fold_product`: product of the two smallest singular values, over the deviation, above which it may be
-      more, as no other solution comes in there.
+    - `contraction`: most that a further step of theirs may be of the one before.
+    - `least_pivot`: least pivot: distance of a joint's derivatives from the span of others'.
+    - `pivot_share`: most that their first step may be of the pivot, up to `fold_product`.
+    - `fold_product`: product of the two smallest singular values above which it may be more, over the
+      deviation, as no other solution comes in there.
     - `least_miss`: error that shows that a row ends beside the pose.
     - `near`: the largest step behind which derivatives are not taken anew; of C++ alone.
     - `lane_steps`: steps of rows that are refined together, at most.
-    - `least_damping`, `damping`: a Newton step is damped by max(least, damping * error^2).
+    - `least_damping`: damping of a Newton step, at least.
+    - `damping`: damping of a Newton step, over the squared error.
     - `largest_step`: a joint's Newton step (rad or m), at most.
     - `converged`: error at which Newton steps end.
-    - `patience`, `progress`: steps end after so many without the error falling to that share of what it
-      was.
-    - `refinement`: how many steps rows take, by stages.
+    - `patience`: steps without progress after which they end.
+    - `progress`: factor by which the error falls in a step that is progress.
+    - `refinement`: steps, and errors between which more follow, by stages.
     """
 
     arrived: float = 0.5e-9
@@ -99,13 +100,13 @@ class SolvePolicy:
     fold_reach: float = 1e-4
     beside_reach: float = 0.0
     fold: float = 0.3
-    fold_product: float = 2.0
     anywhere: float = 1e3
     broken_reach: float = 15.0
     farthest_start: float = 0.05
     contraction: float = 0.25
-    pivot_share: float = 4.0
     least_pivot: float = 1e-5
+    pivot_share: float = 4.0
+    fold_product: float = 2.0
     least_miss: float = 1e-8
     near: float = 1e-4
     lane_steps: int = 7
