@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
+from ikgen.forms.companion_roots import companion_roots
 from ikgen.forms.form import Form
 from ikgen.forms.formula import Formula, FormulaWriter, equals
 from ikgen.forms.lowered_form import ROUNDED, LoweredRoutine, Tolerances, leading
@@ -121,22 +122,12 @@ def _unit_roots(polynomials: ComplexArray) -> ComplexArray:
     size = np.abs(polynomials).max(axis=1)
     finite = np.isfinite(size)
     whole = finite & (np.abs(polynomials[:, 0]) >= 1e-13 * size) & (size > 0.0)
-    roots[whole] = _roots(polynomials[whole])
+    roots[whole] = companion_roots(polynomials[whole])
     short = finite & ~whole & (polynomials[:, 1] != 0.0)
-    roots[short, :2] = _roots(polynomials[short, 1:4])
+    roots[short, :2] = companion_roots(polynomials[short, 1:4])
     with np.errstate(invalid="ignore"):
         length = np.abs(roots)
         return np.where(np.abs(length - 1) < 1e-4, roots / length, np.nan + 1j * np.nan)
-
-
-def _roots(polynomials: ComplexArray) -> ComplexArray:
-    """The roots (n, d) of polynomials (n, d + 1), the first coefficient not 0: the eigenvalues of their
-    companions."""
-    degree = polynomials.shape[1] - 1
-    companions = np.zeros((len(polynomials), degree, degree), complex)
-    companions[:, 1:, :-1] = np.eye(degree - 1)
-    companions[:, 0] = -polynomials[:, 1:] / polynomials[:, :1]
-    return np.asarray(np.linalg.eigvals(companions), dtype=complex)
 
 
 def _self_inversive(letters: list[Math]) -> Math:

@@ -11,7 +11,9 @@ from sympy.printing.str import StrPrinter
 from ikgen import __version__
 from ikgen.emit.rendering import render
 from ikgen.errors import UsageError
+from ikgen.forms.companion_roots import companion_roots
 from ikgen.model.dh import Angle, DHChain, DHRow, Length
+from ikgen.symbolic.circle_angles import circle_angles
 from ikgen.symbolic.exact_numbers import exact_number
 from ikgen.symbolic.joint_solutions import solutions
 from ikgen.symbolic.matrix_equations import equations
@@ -56,7 +58,10 @@ def module_text(derivation: Derivation) -> str:
         name=derivation.module.name,
         version=__version__,
         source=derivation.module.source_name,
-        roots=[inspect.getsource(f).replace("  # type: ignore[misc]", "") for f in roots],
+        roots=[
+            inspect.getsource(f)
+            for f in ((companion_roots, circle_angles, *roots) if roots else ())
+        ],
         symbols=_symbols(names, found, dh),
         constants=_constants(names, dh),
         held=_held(derivation, names),

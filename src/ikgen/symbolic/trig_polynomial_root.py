@@ -7,13 +7,15 @@ from typing import Any
 import numpy as np
 import sympy
 
+from ikgen.symbolic.circle_angles import circle_angles
+
 __all__ = ["MOST_DEGREE", "TrigPolynomialRoot"]
 
 MOST_DEGREE = 60
 """The largest degree whose roots the eigenvalues of a companion matrix give with enough digits."""
 
 
-class TrigPolynomialRoot(sympy.Function):  # type: ignore[misc]
+class TrigPolynomialRoot(sympy.Function):
     """`TrigPolynomialRoot(k, low, high, a0, n1, a1, b1, n2, a2, b2, ...)`: the k-th real root u (from 0,
     ascending) from low to high, inside (-pi, pi], of `a0 + a1 cos(n1 u) + b1 sin(n1 u) + ... = 0` with
     whole numbers n.
@@ -30,7 +32,7 @@ class TrigPolynomialRoot(sympy.Function):  # type: ignore[misc]
 
     @staticmethod
     def _imp_(k: Any, low: Any, high: Any, a0: Any, *terms: Any) -> Any:
-        """Values at numbers or arrays, from the eigenvalues of the companion matrix in exp(i u)."""
+        """Values at numbers or arrays, from the polynomial in exp(i u)."""
         a0, *given = np.broadcast_arrays(a0, *terms)
         harmonics = [int(n.flat[0]) for n in given[::3]]
         degree = max(harmonics)
@@ -39,13 +41,6 @@ class TrigPolynomialRoot(sympy.Function):  # type: ignore[misc]
         for n, a, b in zip(harmonics, given[1::3], given[2::3], strict=True):
             p[..., degree - n] += a - 1j * b
             p[..., degree + n] += a + 1j * b
-        usable = np.isfinite(p).all(axis=-1) & (np.abs(p[..., 0]) > 0.0)
-        p[~usable] = np.eye(2 * degree + 1)[0]
-        p[~usable, -1] = 16.0  # no root on the circle
-        companion = np.zeros((*usable.shape, 2 * degree, 2 * degree), dtype=complex)
-        companion[..., 1:, :-1] = np.eye(2 * degree - 1)
-        companion[..., :, -1] = -p[..., :0:-1] / p[..., :1]
-        z = np.linalg.eigvals(companion)
-        angle = np.where(np.abs(np.abs(z) - 1.0) < 1e-6, np.angle(z), np.nan)
+        angle = circle_angles(p)
         inside = (angle >= np.asarray(low)[..., None]) & (angle <= np.asarray(high)[..., None])
         return np.sort(np.where(inside, angle, np.nan), axis=-1)[..., int(k)]

@@ -7,10 +7,12 @@ from typing import Any
 import numpy as np
 import sympy
 
+from ikgen.symbolic.circle_angles import circle_angles
+
 __all__ = ["TrigQuarticRoot"]
 
 
-class TrigQuarticRoot(sympy.Function):  # type: ignore[misc]
+class TrigQuarticRoot(sympy.Function):
     """`TrigQuarticRoot(a2, b2, a1, b1, a0, k)`: the k-th real root u (from 0, in the order of their
     values in (-pi, pi]) of `a2 cos 2u + b2 sin 2u + a1 cos u + b1 sin u + a0 = 0`. There are four at
     most.
@@ -37,14 +39,7 @@ class TrigQuarticRoot(sympy.Function):  # type: ignore[misc]
 
     @staticmethod
     def _imp_(a2: Any, b2: Any, a1: Any, b1: Any, a0: Any, k: Any) -> Any:
-        """Values at numbers or arrays, from the eigenvalues of the companion matrix."""
+        """Values at numbers or arrays."""
         a2, b2, a1, b1, a0 = np.broadcast_arrays(a2, b2, a1, b1, a0)
         p = np.stack([a2 - 1j * b2, a1 - 1j * b1, 2 * a0 + 0j, a1 + 1j * b1, a2 + 1j * b2], axis=-1)
-        usable = np.isfinite(p).all(axis=-1) & (np.abs(p[..., 0]) > 0.0)
-        p = np.where(usable[..., None], p, np.array([1.0, 0.0, 0.0, 0.0, 16.0]))
-        companion = np.zeros((*usable.shape, 4, 4), dtype=complex)
-        companion[..., 1:, :3] = np.eye(3)
-        companion[..., :, 3] = -p[..., :0:-1] / p[..., :1]
-        z = np.linalg.eigvals(companion)
-        angle = np.where(np.abs(np.abs(z) - 1.0) < 1e-6, np.angle(z), np.nan)
-        return np.sort(angle, axis=-1)[..., int(k)]
+        return np.sort(circle_angles(p), axis=-1)[..., int(k)]

@@ -18,8 +18,14 @@ struct TrigRoots {
 
 namespace tq {
 
-constexpr double kFlat = 1e-14;  // of what a slope is the sum of: less is round-off, as at a triple root
-constexpr double kChord = 1e-3;  // half width from which a line's chord tells its roots well
+constexpr double kFlat = 1e-14;      // of what a slope is the sum of: less is round-off, as at a triple root
+constexpr double kChord = 1e-3;      // half width from which a line's chord tells its roots well
+constexpr double kTouching = 0.02;   // half width below which an extremum tells them
+constexpr double kContact = 0.5;     // of a line's half width: how far from its point of contact an extremum may be
+constexpr double kNarrowest = 0.3;   // of a line's half width: the least one of a parabola
+constexpr double kWidest = 3.0;      // of a line's half width: the largest one of a parabola
+constexpr double kInexact = 1e-3;    // what a multiple of a line's half width may be off by
+constexpr double kLeastHalf = 1e-7;  // distance from the extremum below which a root is round-off
 
 struct Coefficients {
   double a2, b2, a1, b1, a0;
@@ -150,19 +156,19 @@ inline int tangent(const Coefficients& f, Point t, double reach, double tol, Poi
   const Point e = newton(f, t, 1);
   const double u = f.a2 * (e.c - e.s) * (e.c + e.s) + 2.0 * f.b2 * e.s * e.c, v = f.a1 * e.c + f.b1 * e.s;
   const double curve = -4.0 * u - v;
-  if (std::abs(e.c - t.c) + std::abs(e.s - t.s) > 0.5 * reach + 1e-3 || std::abs(curve) < 1e-200) return -1;
+  if (std::abs(e.c - t.c) + std::abs(e.s - t.s) > kContact * reach + kInexact || std::abs(curve) < 1e-200) return -1;
   const double r = 2.0 * (u + v + f.a0) / curve, h = std::sqrt(std::abs(r));
-  if (h < 0.3 * reach - 1e-3) return -1;
+  if (h < kNarrowest * reach - kInexact) return -1;
   if (r >= 0.0) {
     out[0] = e;
     if (r <= tol * tol + 1e-14 / std::abs(curve)) return 1;
     return reach > 1e-4 ? -1 : 0;
   }
-  if (h > 3.0 * reach + 1e-3) return -1;
+  if (h > kWidest * reach + kInexact) return -1;
   const double n = std::sqrt(1.0 + h * h);
   out[0] = {(e.c - h * e.s) / n, (e.s + h * e.c) / n};
   out[1] = {(e.c + h * e.s) / n, (e.s - h * e.c) / n};
-  if (h < 1e-7) return 2;  // the value at the extremum is round-off: Newton steps would be too
+  if (h < kLeastHalf) return 2;  // the value at the extremum is round-off: Newton steps would be too
   for (Point& end : out)
     if (!approach(f, 0.5 * h, end) && h > kChord) return -1;
   return 2;
@@ -195,7 +201,7 @@ inline TrigRoots trig_quartic(double a2, double b2, double a1, double b1, double
     const double r = std::sqrt(std::max((1.0 - d) * (1.0 + d), 0.0));
     tq::Point found[2];
     int n = -1;
-    if (r < 0.02) {
+    if (r < tq::kTouching) {
       const double e = std::copysign(1.0, d);
       n = tq::tangent(f, {e * x, e * y}, r, tol, found);
     }

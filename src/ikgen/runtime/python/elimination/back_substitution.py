@@ -16,7 +16,7 @@ from ikgen.runtime.python.elimination.loop_equations import (
 )
 from ikgen.runtime.python.rows.solution_rows import rows_of
 
-__all__ = ["complete_angles", "middle_angles", "null_angles", "turned"]
+__all__ = ["complete_angles", "middle_angles", "null_angles", "turned", "with_last_angle"]
 
 _ROUNDING = 1e-15  # of an equation's entries: at a root they are singular to the last digit
 _ONE_ROOT = 1e-6  # rad: rounding moves roots with two solutions by less
@@ -131,5 +131,10 @@ def complete_angles(C: list[Array], left: Array, right: Array, pose: Index, t: A
     X = rows_of(C[5], pose)
     for turn, c in zip(rotations_z(angles.T), C):
         X = X @ turn @ rows_of(c, pose)
+    return with_last_angle(angles, X)
+
+
+def with_last_angle(values: Array, X: Array) -> Array:
+    """The values (k, 5) of a loop and theta_6, which turns back what the motion X (k, 4, 4) turns."""
     t6 = np.arctan2(X[:, 0, 1] - X[:, 1, 0], X[:, 0, 0] + X[:, 1, 1])
-    return np.concatenate([angles, t6[:, None]], axis=1)
+    return np.concatenate([values, t6[:, None]], axis=1)

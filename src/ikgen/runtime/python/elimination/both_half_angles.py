@@ -14,13 +14,17 @@ from numpy.typing import NDArray
 from ikgen.runtime.python.arrays.array_types import Array, Flags, Index
 from ikgen.runtime.python.elimination.hidden_angle import (
     BLURRED,
+    HALF,
     NO_PIVOT,
     NODES,
     REAL,
     Resultant,
     all_clear,
     angles_off,
+    half_tangents,
     loop_pencil,
+    opposite_nodes,
+    turned_sides,
 )
 from ikgen.runtime.python.elimination.loop_equations import XS, YS
 from ikgen.runtime.python.rows.solution_rows import first_of_equals, rows_of
@@ -33,13 +37,7 @@ _DOUBLE = 1e-4  # of the size: what the second direction of a null space of two 
 _SINGLE = 1e-3  # of what the second direction leaves: the first alone may be a null vector
 _FAR = 1e3  # rad: an imaginary part of what is no root
 _SAME = 1e-6  # rad: rounding moves roots with two solutions by less
-_HALF = np.array(  # of 1, c, s by half angles, times cos h and times sin h
-    [
-        [[1.0, 0.0, 0.0, 0.0], [0.5, 0.0, 0.5, 0.0], [0.0, 0.5, 0.0, 0.5]],
-        [[0.0, 1.0, 0.0, 0.0], [0.0, -0.5, 0.0, 0.5], [0.5, 0.0, -0.5, 0.0]],
-    ]
-)
-_LIFT = np.einsum("aik,bjl->abijkl", _HALF, _HALF).reshape(4, 9, 16)
+_LIFT = np.einsum("aik,bjl->abijkl", HALF, HALF).reshape(4, 9, 16)
 _MIXED = 0.8 + 0.6j  # a share of one shift with the other that no two solutions have in common
 
 Complex = NDArray[np.complex128]
@@ -112,29 +110,18 @@ def _roots(E: Array, left: Array, M: Resultant) -> tuple[Array, Array, Flags, Fl
     M has full rank elsewhere (N,), and whether rounding leaves told which of them are real (N,).
 
     P is M's pseudo-inverse where M is far from singular, at the angle opposite a node. What `P M` has of
-    roots that M does not have lies anywhere. With `M = M0 + N Rot(theta) W` the eigenvalues of `-J (1 + 2 W
-    P N)` are tan(theta/2) about the node, as those of square ones are.
+    roots that M does not have lies anywhere.
     """
-    c, s = np.cos(NODES)[:, None, None], np.sin(NODES)[:, None, None]
-    at_node = M[0][:, None] - c * M[1][:, None] - s * M[2][:, None]
-    k = np.linalg.slogdet(np.swapaxes(at_node, -1, -2) @ at_node)[1].argmax(axis=1)
-    row = np.arange(len(at_node))
-    c, s, x, y = c[k], s[k], E[..., XS], E[..., YS]
-    N = np.zeros((len(row), 24, 32))
-    cosine, sine = c * x + s * y, c * y - s * x
-    for a in range(4):
-        N[:, 6 * a : 6 * a + 6, 4 * a : 4 * a + 4] = cosine
-        N[:, 6 * a : 6 * a + 6, 16 + 4 * a : 20 + 4 * a] = sine
+    opposite = opposite_nodes(M)
+    k = np.linalg.slogdet(np.swapaxes(opposite, -1, -2) @ opposite)[1].argmax(axis=1)
     W = np.concatenate([lift_both(left[:, XS]), lift_both(left[:, YS])], axis=1)
-    pivot = at_node[row, k]
+    pivot = opposite[np.arange(len(k)), k]
     left_of, sigma, right_of = np.linalg.svd(pivot, full_matrices=False)
     kept: Flags = np.asarray(sigma > sigma[:, :1] / NO_PIVOT)
     over = np.divide(1.0, sigma, where=kept, out=np.zeros_like(sigma))
     P = np.swapaxes(right_of, 1, 2) @ (over[..., None] * np.swapaxes(left_of, 1, 2))
-    K = np.eye(32) + 2.0 * W @ (P @ N)
-    t = np.linalg.eigvals(np.concatenate([K[:, 16:], -K[:, :16]], axis=1))
-    sharp = np.abs(K).max(axis=(1, 2)) < BLURRED
-    return *angles_off(t, NODES[k]), np.asarray(kept.all(axis=1)), np.asarray(sharp)
+    t, largest = half_tangents(W, P @ turned_sides(E, k, 4))
+    return *angles_off(t, NODES[k]), np.asarray(kept.all(axis=1)), largest < BLURRED
 
 
 def null_pairs(rows: Array, sigma: Array, pose: Index, t3: Array) -> tuple[Index, Array, Flags]:

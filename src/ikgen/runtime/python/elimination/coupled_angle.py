@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -165,9 +166,7 @@ def _roots(values: Array, degree: int) -> tuple[Complex, Flags]:
     """The roots (N, 2 degree), angles, of trigonometric polynomials with `values` (N, n) at the nodes, and
     which are `_sure`."""
     harmonics = np.arange(-degree, degree + 1)
-    c = np.fft.fft(values, axis=1)[:, harmonics]
-    c = c / np.maximum(np.abs(c).max(axis=1, keepdims=True), 1e-300)
-    lead = np.where(np.abs(c[:, -1:]) < 1e-300, 1e-300, c[:, -1:])
+    c, lead = _in_units(np.fft.fft(values, axis=1)[:, harmonics])
     z = _circle_roots(c)
     size = np.abs(z)
     roots: Complex = _FIRST_NODE + np.angle(z) - 1j * np.log(size)
@@ -175,6 +174,13 @@ def _roots(values: Array, degree: int) -> tuple[Complex, Flags]:
         harmonic = (size[:, :, None] ** np.arange(2 * degree + 1)).sum(axis=2)
         moved = _NOISE * harmonic / (size * np.abs(lead))
     return roots, _sure(z, np.abs(roots.imag), moved)
+
+
+def _in_units(c: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Polynomials' coefficients (N, n) in units of each one's largest, and the last ones (N, 1) alone,
+    which then are not 0."""
+    c = c / np.maximum(np.abs(c).max(axis=1, keepdims=True), 1e-300)
+    return c, np.where(np.abs(c[:, -1:]) < 1e-300, 1e-300, c[:, -1:])
 
 
 def _circle_roots(c: Complex) -> Complex:
@@ -200,9 +206,7 @@ def _circle_roots(c: Complex) -> Complex:
 def _close_roots(values: Array) -> tuple[Complex, Flags]:
     """The roots (N, n), from a crowded angle, of determinants with `values` (N, n + 1) at the nodes near
     it, and which are `_sure`: eigenvalues of the colleague matrix (Good 1961)."""
-    c = values @ _CHEBYSHEV.T
-    c = c / np.maximum(np.abs(c).max(axis=1, keepdims=True), 1e-300)
-    lead = np.where(np.abs(c[:, -1:]) < 1e-300, 1e-300, c[:, -1:])
+    c, lead = _in_units(values @ _CHEBYSHEV.T)
     colleague = np.zeros((len(c), _CLOSE, _CLOSE))
     k = np.arange(_CLOSE - 1)
     colleague[:, k, k + 1] = colleague[:, k + 1, k] = 0.5

@@ -16,18 +16,22 @@ from ikgen.runtime.python.elimination.loop_equations import XS, YS, ZS
 __all__ = [
     "BLURRED",
     "DOUBTFUL",
+    "HALF",
     "NODES",
     "NO_PIVOT",
     "REAL",
     "Resultant",
     "all_clear",
     "angles_off",
+    "half_tangents",
     "hidden_angles",
     "lift",
     "loop_pencil",
     "loop_resultant",
+    "opposite_nodes",
     "real_angles",
     "solved",
+    "turned_sides",
 ]
 
 Resultant = tuple[Array, Array, Array]
@@ -40,15 +44,13 @@ _NO_RANK = 1e9  # entry of the eigenproblem above which half of a root's digits 
 BLURRED = 1e6
 """Entry of the eigenproblem above which rounding, grown by its square, hides whether a root is real."""
 NO_PIVOT = 1e11  # condition of M at the node above which nearly all are
-_LIFT = np.kron(  # of 1, c and s by half angles, times cos h and times sin h
-    np.array(
-        [
-            [[1.0, 0.0, 0.0, 0.0], [0.5, 0.0, 0.5, 0.0], [0.0, 0.5, 0.0, 0.5]],
-            [[0.0, 1.0, 0.0, 0.0], [0.0, -0.5, 0.0, 0.5], [0.5, 0.0, -0.5, 0.0]],
-        ]
-    ),
-    np.eye(3),
+HALF = np.array(  # of 1, c, s by half angles, times cos h and times sin h
+    [
+        [[1.0, 0.0, 0.0, 0.0], [0.5, 0.0, 0.5, 0.0], [0.0, 0.5, 0.0, 0.5]],
+        [[0.0, 1.0, 0.0, 0.0], [0.0, -0.5, 0.0, 0.5], [0.5, 0.0, -0.5, 0.0]],
+    ]
 )
+_LIFT = np.kron(HALF, np.eye(3))
 _JITTER = np.cos(np.outer(np.arange(1, 13), np.arange(1, 13)))
 
 
@@ -80,30 +82,48 @@ def hidden_angles(
 ) -> tuple[Index, Array, Index, Flags]:
     """The roots theta_3 with an imaginary part below `accept`: rows (k,) in order and real parts (k,),
     in order for each; per row the number of those that are clearly real, -1 where M is singular at every
-    angle and roots mean nothing, and whether the others clearly are not.
-
-    With `M(theta) = M0 + N Rot(theta) W`, Rot = c + s J on R^16, about a node where `M_pi = M0 - N
-    W` is far from singular: tan(theta/2) are the eigenvalues of `-J (1 + 2 W M_pi^-1 N)`.
-    """
-    c, s = np.cos(NODES)[:, None, None], np.sin(NODES)[:, None, None]
-    at_node = M[0][:, None] - c * M[1][:, None] - s * M[2][:, None]
-    k = np.abs(np.linalg.det(at_node)).argmax(axis=1)
-    row = np.arange(len(at_node))
-    c, s = c[k], s[k]
-    x, y = E[..., XS], E[..., YS]
-    N = np.zeros((len(row), 12, 16))
-    N[:, :6, 0:4] = N[:, 6:, 4:8] = c * x + s * y
-    N[:, :6, 8:12] = N[:, 6:, 12:16] = c * y - s * x
+    angle and roots mean nothing, and whether the others clearly are not."""
+    opposite = opposite_nodes(M)
+    k = np.abs(np.linalg.det(opposite)).argmax(axis=1)
+    row = np.arange(len(opposite))
+    N = turned_sides(E, k, 2)
     W = np.concatenate([lift(left[:, XS]), lift(left[:, YS])], axis=1)
-    pivot, unit = at_node[row, k], np.broadcast_to(np.eye(12), (len(row), 12, 12))
+    pivot, unit = opposite[row, k], np.broadcast_to(np.eye(12), (len(row), 12, 12))
     found = solved(pivot, np.concatenate([N, unit], axis=2))
-    K = np.eye(16) + 2.0 * W @ found[:, :, :16]
-    t = np.linalg.eigvals(np.concatenate([K[:, 8:], -K[:, :8]], axis=1))
+    t, largest = half_tangents(W, found[:, :, :16])
     pose, angle, real, clear = real_angles(t, NODES[k], accept)
     condition = np.abs(pivot).max(axis=(1, 2)) * np.abs(found[:, :, 16:]).max(axis=(1, 2))
-    largest = np.abs(K).max(axis=(1, 2))
     real[(largest > _NO_RANK) | (condition > NO_PIVOT)] = -1
     return pose, angle, real, clear & (largest < BLURRED)
+
+
+def opposite_nodes(M: Resultant) -> Array:
+    """M at the angles opposite the nodes: (N, 7) of them."""
+    c, s = np.cos(NODES)[:, None, None], np.sin(NODES)[:, None, None]
+    return np.asarray(M[0][:, None] - c * M[1][:, None] - s * M[2][:, None])
+
+
+def turned_sides(E: Array, node: Index, lifts: int) -> Array:
+    """N (N, 6 lifts, 8 lifts) of six equations lifted to so many times as many, theta measured from the
+    node (N,) of each pose: `M(theta) = M0 + N Rot(theta) W` with Rot = c + s J."""
+    c, s = np.cos(NODES)[node, None, None], np.sin(NODES)[node, None, None]
+    x, y = E[..., XS], E[..., YS]
+    cosine, sine = c * x + s * y, c * y - s * x
+    out = np.zeros((len(node), 6 * lifts, 8 * lifts))
+    for a in range(lifts):
+        part = out[:, 6 * a : 6 * a + 6]
+        part[:, :, 4 * a : 4 * a + 4] = cosine
+        part[:, :, 4 * (lifts + a) : 4 * (lifts + a) + 4] = sine
+    return out
+
+
+def half_tangents(W: Array, found: Array) -> tuple[Array | NDArray[np.complex128], Array]:
+    """tan(theta/2) at roots theta from the node, from `found`, P N with P the inverse of `M_pi = M0 - N W`
+    or what stands for it: the eigenvalues of `-J (1 + 2 W P N)`; and its largest entries (N,)."""
+    half = W.shape[1] // 2
+    K = np.eye(2 * half) + 2.0 * W @ found
+    t = np.linalg.eigvals(np.concatenate([K[:, half:], -K[:, :half]], axis=1))
+    return t, np.asarray(np.abs(K).max(axis=(1, 2)))
 
 
 def real_angles(

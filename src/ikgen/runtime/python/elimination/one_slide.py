@@ -13,7 +13,11 @@ import numpy as np
 
 from ikgen.runtime.python.arrays.array_types import Array
 from ikgen.runtime.python.arrays.rigid_motion import inverses, motions_z, rotations_z
-from ikgen.runtime.python.elimination.back_substitution import middle_angles, turned
+from ikgen.runtime.python.elimination.back_substitution import (
+    middle_angles,
+    turned,
+    with_last_angle,
+)
 from ikgen.runtime.python.elimination.both_half_angles import both_angles
 from ikgen.runtime.python.elimination.general_6r import Candidates, Elimination
 from ikgen.runtime.python.elimination.loop_equations import (
@@ -100,5 +104,4 @@ def _with_slide(C: list[Array], left: Array, right: Array, t: Array, first: bool
     for i in range(5):
         moves = motions_z if i == (0 if first else 1) else rotations_z
         X = X @ moves(values[:, i]) @ C[i]
-    t6 = np.arctan2(X[:, 0, 1] - X[:, 1, 0], X[:, 0, 0] + X[:, 1, 1])
-    return np.concatenate([values, t6[:, None]], axis=1)
+    return with_last_angle(values, X)

@@ -36,6 +36,10 @@ _REAL = (
 )
 _CHORD = 1e-3  # half width from which a line's chord tells its roots well
 _TOUCHING = 0.02  # half width below which an extremum tells them
+_CONTACT = 0.5  # of a line's half width: how far from its point of contact an extremum may be
+_NARROWEST = 0.3  # of a line's half width: the least one of a parabola
+_WIDEST = 3.0  # of a line's half width: the largest one of a parabola
+_INEXACT = 1e-3  # what a multiple of a line's half width may be off by
 _LEAST_HALF = 1e-7  # distance from the extremum below which a root is round-off
 _APART = 1e-3  # distance of two roots that are not the same
 _Pair = tuple[float, float]
@@ -107,16 +111,16 @@ def _tangent(
     within reach, the half width of the line's chord, or one of two roots that are much closer, or not
     where a parabola has them, as among four."""
     x, y, curve, square = quartic_extremum(k, c, s, FLOATS)
-    if abs(x - c) + abs(y - s) > 0.5 * reach + 1e-3 or square == math.inf:
+    if abs(x - c) + abs(y - s) > _CONTACT * reach + _INEXACT or square == math.inf:
         return None
     h = math.sqrt(abs(square))
-    if h < 0.3 * reach - 1e-3:
+    if h < _NARROWEST * reach - _INEXACT:
         return None
     if square <= 0.0:
         return (
             [(x, y)] if -square <= tol * tol + 1e-14 / abs(curve) else None if reach > 1e-4 else []
         )
-    if h > 3.0 * reach + 1e-3:
+    if h > _WIDEST * reach + _INEXACT:
         return None
     ends = quartic_ends(x, y, h, FLOATS)
     if h < _LEAST_HALF:  # the value at the extremum is round-off: Newton steps would be too
@@ -195,8 +199,9 @@ def _beside_contacts(
     reach = np.sqrt(np.maximum((1.0 - d) * (1.0 + d), 0.0))
     u, v, _, square = quartic_extremum(k, c, s, ARRAYS)
     half = np.sqrt(np.maximum(square, 0.0))
-    near = np.abs(u - c) + np.abs(v - s) <= 0.5 * reach + 1e-3
-    near &= (half >= np.maximum(0.3 * reach - 1e-3, _LEAST_HALF)) & (half <= 3.0 * reach + 1e-3)
+    near = np.abs(u - c) + np.abs(v - s) <= _CONTACT * reach + _INEXACT
+    near &= half >= np.maximum(_NARROWEST * reach - _INEXACT, _LEAST_HALF)
+    near &= half <= _WIDEST * reach + _INEXACT
     half = np.where(near, half, np.nan)
     (c0, s0), (c1, s1) = quartic_ends(u, v, half, ARRAYS)
     return np.stack([c0, c1], axis=1), np.stack([s0, s1], axis=1), half
