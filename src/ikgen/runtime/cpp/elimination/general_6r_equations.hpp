@@ -20,6 +20,12 @@ namespace elimination {
 
 using Complex = std::complex<double>;
 
+template <Index N> inline Complex dot(const std::array<Complex, N>& a, const std::array<Complex, N>& b) noexcept {
+  Complex sum(0.0, 0.0);
+  for (Index i = 0; i < N; ++i) sum += std::conj(a[i]) * b[i];
+  return sum;
+}
+
 // Invariants l = z, p, m = p x l, q = (p.p) l - 2 (p.l) p: x of the four (0-3), y (4-7), z (8-11), p.p, p.l.
 inline std::array<double, 14> invariants(const Frame& X) noexcept {
   const double l[3] = {X.R[0][2], X.R[1][2], X.R[2][2]};

@@ -10,7 +10,8 @@
 namespace ikgen_runtime {
 
 // --- general_6r: the closed loop of six joints -----------------------------------------------------
-// Plain loops over fixed arrays: Eigen's expressions would cost the including file minutes of compilation.
+// Plain loops over fixed arrays: roots and null vectors of a resultant compile in 1.1 s so, and in 17 s by Eigen's
+// PartialPivLU, EigenSolver and FullPivLU (g++ 12 -O3).
 
 namespace elimination {
 
@@ -30,7 +31,8 @@ inline Frame moved(const Frame& a, bool turns, double value) noexcept {
   return turns ? rotated(a, std::cos(value), std::sin(value)) : slid(a, value);
 }
 
-inline double wrap(double x) noexcept {  // to (-pi, pi]
+// An angle in (-pi, pi], where without_turns may leave -pi: what rounding has beside half a turn is one way about.
+inline double wrap(double x) noexcept {
   const double y = x - 2.0 * kPi * std::floor((x + kPi) / (2.0 * kPi));
   return y <= -kPi ? kPi : y;
 }

@@ -36,13 +36,6 @@ inline void add_pair(const Null& v, Pairs& out) noexcept {
   out.z5[out.count++] = z5 / r;
 }
 
-inline Complex dot(const std::array<Complex, 6>& a, const std::array<Complex, 6>& b) noexcept {
-  Complex sum(0.0, 0.0);
-  for (Index i = 0; i < 6; ++i) sum += std::conj(a[i]) * b[i];
-  return sum;
-}
-
-
 struct Plane {  // a null space of two dimensions, and the phases within its vectors
   std::array<const Null*, 2> n;
   std::array<std::array<Complex, 6>, 2> u, v;

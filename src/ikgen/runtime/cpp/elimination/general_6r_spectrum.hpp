@@ -107,6 +107,19 @@ inline Mat<2 * N, 2 * N> quarter_turned(const Mat<N, 2 * N>& top, const Mat<N, 2
   return out;
 }
 
+// -J (1 + 2 W P N) of `solved`, P N, with W the left side's terms in the cosine of theta_3, then in its sine, as `lifted`
+// has them.
+template <Index K, Index C, class Lift>
+inline Mat<C, C> about_node(const Mat<14, 12>& left, const Mat<K, C>& solved, const Lift& lifted) noexcept {
+  Mat<4, 12> x, y;
+  std::copy_n(left.v.begin(), 48, x.v.begin());
+  std::copy_n(left.v.begin() + 48, 48, y.v.begin());
+  Mat<C / 2, C> top{}, bottom{};
+  add_product<K>(2.0, lifted(x), 0, 0, solved, 0, top);
+  add_product<K>(2.0, lifted(y), 0, 0, solved, 0, bottom);
+  return quarter_turned(top, bottom);
+}
+
 // Of the eigenproblem's entries: rounding, grown by their square, hides whether a root is real, or half of its digits are
 // rounding; of the largest pivot of M_pi over its least: nearly all are.
 inline constexpr double kBlurred = 1e6;
@@ -198,19 +211,13 @@ inline Spectrum find_roots(const Mat<6, 16>& E, const Mat<14, 12>& left, const R
   best_node(M, node);
   if (!(node.determinant > 0.0)) return out;
   Mat<12, 16> N{};
-  Mat<4, 12> x, y;
   for (Index i = 0; i < 6; ++i)
     for (Index k = 0; k < 4; ++k) {
       N(i, k) = N(6 + i, 4 + k) = node.c * E(i, k) + node.s * E(i, 4 + k);
       N(i, 8 + k) = N(6 + i, 12 + k) = node.c * E(i, 4 + k) - node.s * E(i, k);
     }
-  std::copy_n(left.v.begin(), 48, x.v.begin());
-  std::copy_n(left.v.begin() + 48, 48, y.v.begin());
   solve(node.lu, node.pivot, N);
-  Mat<8, 16> top{}, bottom{};
-  add_product<12>(2.0, lift(x), 0, 0, N, 0, top);
-  add_product<12>(2.0, lift(y), 0, 0, N, 0, bottom);
-  Mat<16, 16> A = quarter_turned(top, bottom);
+  Mat<16, 16> A = about_node(left, N, [](const Mat<4, 12>& side) noexcept { return lift(side); });
   const double largest = largest_entry(A);
   std::array<Complex, 16> t;
   if (!eigenvalues(A, t)) return out;

@@ -68,12 +68,6 @@ inline Shifted shifted(const Null16c& v, Index angle) noexcept {
   return out;
 }
 
-inline Complex dot(const std::array<Complex, 12>& a, const std::array<Complex, 12>& b) noexcept {
-  Complex sum(0.0, 0.0);
-  for (Index i = 0; i < 12; ++i) sum += std::conj(a[i]) * b[i];
-  return sum;
-}
-
 inline Null16c to_complex(const Null16& v) noexcept {
   Null16c out;
   std::copy(v.begin(), v.end(), out.begin());

@@ -97,14 +97,7 @@ inline bool find_tall_roots(const Mat<6, 16>& E, const Mat<14, 12>& left, const 
         N(6 * h + i, 4 * h + k) = c * E(i, k) + s * E(i, 4 + k);
         N(6 * h + i, 16 + 4 * h + k) = c * E(i, 4 + k) - s * E(i, k);
       }
-  Mat<4, 12> x, y;
-  std::copy_n(left.v.begin(), 48, x.v.begin());
-  std::copy_n(left.v.begin() + 48, 48, y.v.begin());
-  const Mat<16, 32> solved = qr.solve_all(N);
-  Mat<16, 32> top{}, bottom{};
-  add_product<16>(2.0, lift_both(x), 0, 0, solved, 0, top);
-  add_product<16>(2.0, lift_both(y), 0, 0, solved, 0, bottom);
-  Mat<32, 32> A = quarter_turned(top, bottom);
+  Mat<32, 32> A = about_node(left, qr.solve_all(N), [](const Mat<4, 12>& side) noexcept { return lift_both(side); });
   out.sharp = largest_entry(A) < kBlurred;
   return eigenvalues(A, out.t);
 }

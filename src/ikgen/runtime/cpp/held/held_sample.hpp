@@ -112,9 +112,7 @@ template <class Arm> struct HeldSample {
     typename Arm::template Rows<1> fine;
     const Pose<1> pose = gather<1>(&T);
     Arm::branches(pose, typename Arm::Seed(), std::array<double, 1>{held}, kAnywhere, rows);
-    std::memcpy(fine.q, rows.q, sizeof(fine.q));
-    std::memcpy(fine.flags, rows.flags, sizeof(fine.flags));
-    Arm::refine(pose, {held}, kAnywhere, fine);
+    refine_together(pose, rows, fine);
     int seen = 0;
     for (int r = 0; r < Arm::kLanes; ++r) seen |= keep(rows, fine, r);
     return (seen & kReal) != 0 && (seen & (kRough | kHit)) == 0 && !remove_repetitions();
@@ -181,12 +179,17 @@ template <class Arm> struct HeldSample {
     return again;
   }
 
-  // Where steps lead from all lanes at once, and the error that is left of those that need more than a few.
-  template <class Fine> void refine_lanes(const Eigen::Isometry3d& T, const Rows& rows, Fine& fine, double* error) const noexcept {
-    const Pose<1> pose = gather<1>(&T);
+  // Where steps lead from all lanes at once.
+  template <class Fine> void refine_together(const Pose<1>& pose, const Rows& rows, Fine& fine) const noexcept {
     std::memcpy(fine.q, rows.q, sizeof(fine.q));
     std::memcpy(fine.flags, rows.flags, sizeof(fine.flags));
     Arm::refine(pose, {held}, kAnywhere, fine);
+  }
+
+  // Where these lead, and the error that is left of those that need more than a few.
+  template <class Fine> void refine_lanes(const Eigen::Isometry3d& T, const Rows& rows, Fine& fine, double* error) const noexcept {
+    const Pose<1> pose = gather<1>(&T);
+    refine_together(pose, rows, fine);
     int some[Arm::kLanes], count = 0;
     for (const int lane : Arm::kLaneOfRow)
       if (fine.has(lane, kRough)) some[count++] = lane;
