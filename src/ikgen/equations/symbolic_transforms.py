@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -75,33 +76,32 @@ def run(v: JointVariables, first: int, last: int) -> Rigid:
 
     Linear in the cosines and sines of the cumulative angles.
     """
-    g = v.graph
-    combination, shift = v.row_angle(first)
-    x, y, z = g.zero, g.zero, v.row_distance(first)
-    for i in range(first + 1, last + 1):
-        c, s = v.rotated(combination, shift)
-        a = v.length(v.dh.rows[i].a)
-        x, y = g.add(x, g.mul(a, c)), g.add(y, g.mul(a, s))
-        z = g.add(z, v.row_distance(i))
-        step, more = v.row_angle(i)
-        combination = tuple(p + q for p, q in zip(combination, step, strict=True))
-        shift += more
-    c, s = v.rotated(combination, shift)
-    return Rigid(_rotation_z(g, c, s), (x, y, z))
+    g, rows = v.graph, range(first, last + 1)
+    (c, s), p = _cumulative(v, rows, rows[1:], g.add)
+    return Rigid(_rotation_z(g, c, s), p)
 
 
 def run_inverse(v: JointVariables, first: int, last: int) -> Rigid:
     """The inverse of `run`, in the trailing cumulative angles."""
+    g, rows = v.graph, range(last, first - 1, -1)
+    (c, s), (x, y, z) = _cumulative(v, rows, rows, g.sub)
+    return Rigid(_rotation_z(g, c, g.neg(s)), (g.neg(x), g.neg(y), g.neg(z)))
+
+
+def _cumulative(
+    v: JointVariables, rows: range, links: range, aside: Callable[[Expr, Expr], Expr]
+) -> tuple[tuple[Expr, Expr], tuple[Expr, ...]]:
+    """Cosine and sine of the sum of the rows' angles, and where the links between them lead, each turned by
+    the sum before it; what they lead along y is put `aside`."""
     g = v.graph
-    combination, shift = v.row_angle(last)
-    x, y, z = g.zero, g.zero, v.row_distance(last)
-    for i in range(last, first, -1):
+    combination, shift = v.row_angle(rows[0])
+    x, y, z = g.zero, g.zero, v.row_distance(rows[0])
+    for i, between in zip(rows[1:], links, strict=False):
         c, s = v.rotated(combination, shift)
-        a = v.length(v.dh.rows[i].a)
-        x, y = g.add(x, g.mul(a, c)), g.sub(y, g.mul(a, s))
-        z = g.add(z, v.row_distance(i - 1))
-        step, more = v.row_angle(i - 1)
+        a = v.length(v.dh.rows[between].a)
+        x, y = g.add(x, g.mul(a, c)), aside(y, g.mul(a, s))
+        z = g.add(z, v.row_distance(i))
+        step, more = v.row_angle(i)
         combination = tuple(p + q for p, q in zip(combination, step, strict=True))
         shift += more
-    c, s = v.rotated(combination, shift)
-    return Rigid(_rotation_z(g, c, g.neg(s)), (g.neg(x), g.neg(y), g.neg(z)))
+    return v.rotated(combination, shift), (x, y, z)
