@@ -48,8 +48,6 @@ def helped(error: UnsolvedChainError, request: Request, progress: Progress) -> U
     own = _unasked(error.unsolved, request, progress)
     tried = remedies(error.unsolved, progress)
     found = [a for a in tried if a.closed]
-    if own is None and not tried:
-        return error
     lines = []
     if own is not None:
         lines.append(replace(request, task=None, tool_axis=None).command())
@@ -59,8 +57,9 @@ def helped(error: UnsolvedChainError, request: Request, progress: Progress) -> U
         lines.append(found[0].asked(request).command())
     if found:
         lines.append(_closed(found))
-    elif own is None:
-        lines += [error.hint, f"tried without success: {_listed(tried)}"]
+    else:
+        lines += [line for line in error.hint.splitlines() if line not in lines]
+        lines += [f"tried without success: {_listed(tried)}"] * bool(tried)
     better = UnsolvedChainError(
         error.message, unsolved=error.unsolved, details=error.details, hint="\n".join(lines)
     )
