@@ -2278,7 +2278,8 @@ def _crossing_parts(arm: _Arm, parts: _Parts, crossings: _Crossings, T: Array) -
 
 def _followed(arm: _Arm, q: Array, T: Array) -> _Walked:
     """The curves beside rows q (k, dof) towards aims T (k, ...)."""
-    _, pose = np.unique(T.reshape(len(T), -1), axis=0, return_inverse=True)
+    asked = np.concatenate([T.reshape(len(T), -1), q[:, list(arm.free)]], axis=1)
+    _, pose = np.unique(asked, axis=0, return_inverse=True)
     return _walked(arm, _samples_beside(arm, q, T), T, pose.reshape(-1))
 
 

@@ -17,7 +17,9 @@ from ikgen.derivation.read import read
 from ikgen.errors import BadDescriptionError, UsageError
 from ikgen.generation.emitted_checks import oracle_for
 from ikgen.importers.calibration import row_offsets
-from ikgen.kinematics.forward import file_forward
+from ikgen.kinematics.calibrated import offset_dh
+from ikgen.kinematics.forward import file_forward, row_values
+from ikgen.kinematics.rigid import dh_link
 from ikgen.records.request import Request
 
 if sys.version_info >= (3, 11):
@@ -101,7 +103,7 @@ def test_offsets_of_rows_are_added(tmp_path: Path) -> None:
         turn[:, 1, 0], turn[:, 0, 1] = np.sin(v), -np.sin(v)
         turn[:, 2, 2] = turn[:, 3, 3] = 1.0
         turn[:, 2, 3] = 3e-4
-        T = T @ F @ twist @ turn
+        T = T @ (F @ twist if i == 0 else twist @ F) @ turn
     T = T @ model.dh.file_frames[-1]
     assert np.abs(file_forward(own.dh, q) - T).max() < 1e-14
     assert np.abs(oracle_for(own).forward(q) - T).max() < 1e-14
@@ -207,3 +209,24 @@ def test_what_cannot_be_is_told_of_its_own_file(tmp_path: Path) -> None:
     with pytest.raises(BadDescriptionError) as caught:
         read(calibrated(OWN.replace("0.13342", "133420"), tmp_path))
     assert caught.value.file == str(tmp_path / "own.yaml")
+
+
+@pytest.mark.parametrize("name", ["puma560_paper", "scara_standard"])
+def test_offsets_are_those_of_rows_with_the_numbers_added(name: str) -> None:
+    dh = read(Request(FIXTURES / f"{name}.toml")).dh
+    q = np.random.default_rng(0).uniform(-1.0, 1.0, dh.dof)
+    for i, row in enumerate(dh.rows):
+        for entry in ("alpha", "a", "d", "theta"):
+            offsets = [dict.fromkeys(("alpha", "a", "d", "theta"), 0.0) for _ in dh.rows]
+            offsets[i][entry] = 3e-3
+            T = np.array(dh.X_base)
+            for one, other, value in zip(dh.rows, offsets, row_values(dh, q), strict=True):
+                theta, d = (value, one.d.nominal) if one.revolute else (one.theta.value, value)
+                T = T @ dh_link(
+                    one.alpha.value + other["alpha"],
+                    one.a.nominal + other["a"],
+                    theta + other["theta"],
+                    d + other["d"],
+                )
+            got = file_forward(offset_dh(dh, offsets), q)
+            assert np.abs(got - T @ dh.X_tip).max() < 1e-12, (row.name, entry)

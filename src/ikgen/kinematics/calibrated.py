@@ -20,7 +20,7 @@ from ikgen.kinematics.file_frames import (
 )
 from ikgen.kinematics.fixed_order import product
 from ikgen.kinematics.forward import file_forward, pose_difference
-from ikgen.kinematics.rigid import dh_link, read_only
+from ikgen.kinematics.rigid import dh_link, inverse, read_only
 from ikgen.model.chain import Chain
 from ikgen.model.dh import DHChain
 from ikgen.model.oddity import Oddity
@@ -69,8 +69,11 @@ def offset_dh(dh: DHChain, offsets: Sequence[Mapping[str, float]]) -> DHChain:
     """The rows of `dh` with file frames to whose rows the offsets alpha, a, d, theta are added."""
     frames = [np.array(F) for F in dh.file_frames]
     for i, one in enumerate(offsets):
-        # Rx Tx before a motion about z, and Rz Tz beside it, each commute among themselves
-        frames[i] = product(frames[i], dh_link(one["alpha"], one["a"], one["theta"], one["d"]))
+        # Rx and Tx commute, and so do Rz and Tz; a row's frame has both, the first row's behind the base
+        link = dh_link(one["alpha"], one["a"], 0.0, 0.0)
+        if i == 0:
+            link = product(product(dh.X_base, link), inverse(dh.X_base))
+        frames[i] = product(product(link, frames[i]), dh_link(0.0, 0.0, one["theta"], one["d"]))
     return _with_frames(dh, tuple(read_only(F) for F in frames))
 
 

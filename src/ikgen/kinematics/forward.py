@@ -66,7 +66,8 @@ def dh_forward(dh: DHChain, q: ArrayLike) -> Array:
 
 def dh_frames(dh: DHChain) -> tuple[Array, ...]:
     """The n + 1 constants (4, 4) of the exact DH rows, as `file_frames` has those of the file's chain."""
-    return (dh.X_base, *(row_constant(row) for row in dh.rows[1:]), dh.X_tip)
+    first, *others = (row_constant(row) for row in dh.rows)
+    return (product(dh.X_base, first), *others, dh.X_tip)
 
 
 def file_forward(dh: DHChain, q: ArrayLike) -> Array:

@@ -118,7 +118,8 @@ def _crossing_parts(arm: Arm, parts: Parts, crossings: Crossings, T: Array) -> P
 
 def followed(arm: Arm, q: Array, T: Array) -> Walked:
     """The curves beside rows q (k, dof) towards aims T (k, ...)."""
-    _, pose = np.unique(T.reshape(len(T), -1), axis=0, return_inverse=True)
+    asked = np.concatenate([T.reshape(len(T), -1), q[:, list(arm.free)]], axis=1)
+    _, pose = np.unique(asked, axis=0, return_inverse=True)
     return walked(arm, samples_beside(arm, q, T), T, pose.reshape(-1))
 
 
