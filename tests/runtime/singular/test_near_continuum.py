@@ -212,3 +212,16 @@ def test_a_curve_is_back_along_its_own_direction_alone() -> None:
     along = (1.0, 0.0)
     assert _back(pair, sample(0.0, 0.0, along), sample(0.2, 0.05, along)).all()
     assert not _back(pair, sample(0.0, 0.0, along), sample(0.2, 0.07, along)).any()
+
+
+def test_rows_of_other_held_values_are_followed_apart(monkeypatch: pytest.MonkeyPatch) -> None:
+    seen: list[list[int]] = []
+    monkeypatch.setattr(near_continuum, "samples_beside", lambda arm, q, T: None)
+    monkeypatch.setattr(
+        near_continuum, "walked", lambda arm, first, T, pose: seen.append(pose.tolist())
+    )
+    T = np.stack([np.eye(4)] * 3 + [2.0 * np.eye(4)])
+    q = np.array([[0.1, 0.5], [0.2, 0.5], [0.3, 0.7], [0.1, 0.5]])
+    for free, groups in (((), [0, 0, 0, 1]), ((1,), [0, 0, 1, 2])):
+        followed(SimpleNamespace(free=free), q, T)  # type: ignore[arg-type]
+        assert seen.pop() == groups
