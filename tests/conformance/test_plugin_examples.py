@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.support.small_robots import PLANAR
 from tests.support.solving import NO_COMPILER, import_text
 from tests.support.twist_arm import REACH, TWIST
 
@@ -25,18 +26,6 @@ pytest.importorskip("hatchling")
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 LANGUAGES = ("python",) if NO_COMPILER else ("python", "cpp")
-PLANAR = """
-<robot name="planar">
-  <link name="base"/><link name="upper"/><link name="lower"/><link name="tip"/>
-  <joint name="shoulder" type="revolute"><parent link="base"/><child link="upper"/>
-    <axis xyz="0 0 1"/><limit lower="-2.5" upper="2.5" effort="1" velocity="1"/></joint>
-  <joint name="elbow" type="revolute"><parent link="upper"/><child link="lower"/>
-    <origin xyz="0.4 0 0"/><axis xyz="0 0 1"/>
-    <limit lower="-2.8" upper="2.8" effort="1" velocity="1"/></joint>
-  <joint name="flange" type="fixed"><parent link="lower"/><child link="tip"/>
-    <origin xyz="0.3 0 0"/></joint>
-</robot>
-"""
 
 
 @pytest.fixture

@@ -1,11 +1,25 @@
-"""Robots whose solvers are derived in a second: three revolute joints an arm, for the task `position`."""
+"""Robots whose solvers are derived in a second: two or three revolute joints an arm."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
 
-__all__ = ["elbow_robot", "write_robot"]
+__all__ = ["PLANAR", "elbow_robot", "write_robot"]
+
+PLANAR = """
+<robot name="planar">
+  <link name="base"/><link name="upper"/><link name="lower"/><link name="tip"/>
+  <joint name="shoulder" type="revolute"><parent link="base"/><child link="upper"/>
+    <axis xyz="0 0 1"/><limit lower="-2.5" upper="2.5" effort="1" velocity="1"/></joint>
+  <joint name="elbow" type="revolute"><parent link="upper"/><child link="lower"/>
+    <origin xyz="0.4 0 0"/><axis xyz="0 0 1"/>
+    <limit lower="-2.8" upper="2.8" effort="1" velocity="1"/></joint>
+  <joint name="flange" type="fixed"><parent link="lower"/><child link="tip"/>
+    <origin xyz="0.3 0 0"/></joint>
+</robot>
+"""
+"""An arm of two joints in the plane."""
 
 _JOINTS = (("waist", "0 0 1", 0.2), ("shoulder", "0 1 0", 0.1), ("elbow", "0 1 0", 0.35))
 
