@@ -125,6 +125,15 @@ def test_yaw_and_three_parallel_joints_fit_the_elevation() -> None:
     assert not fits(dh, find_task("position-yaw"))
 
 
+def test_an_elevation_is_of_an_axis_that_is_not_vertical_in_the_middle() -> None:
+    """There both sides of the vertical have one elevation."""
+    dh = chain("open_manipulator_x.urdf")
+    level = np.eye(4)[[2, 1, 0, 3]] * [[-1.0], [1.0], [1.0], [1.0]]  # the tool's z is level at 0
+    other = replace(dh, file_frames=(*dh.file_frames[:-1], dh.file_frames[-1] @ level))
+    assert fitting_tasks(dh)[0].name == "position-pitch:x"
+    assert fitting_tasks(other)[0].name == "position-pitch"
+
+
 def test_a_roll_about_the_tool_axis_asks_for_another_axis(tmp_path: Path) -> None:
     dh = roll(tmp_path)
     assert freedoms_moved(dh, find_task("position-direction")) == 4

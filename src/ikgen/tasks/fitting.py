@@ -10,6 +10,7 @@ import numpy as np
 
 from ikgen.kinematics.axis_relations import reach
 from ikgen.kinematics.forward import file_forward, file_slopes
+from ikgen.kinematics.joint_box import joint_box
 from ikgen.program.policy import LEVEL
 from ikgen.tasks import AXES, POSE, TASKS, Task
 
@@ -44,7 +45,7 @@ _BARELY = 0.02
 freedoms."""
 
 _AS_GOOD = 0.5
-"""The task's first axis is taken unless it is conditioned worse than another by this factor."""
+"""The task's first axis is taken unless another suits the arm better by this factor."""
 
 
 def fitting_tasks(dh: DHChain, axis: str | None = None) -> tuple[Task, ...]:
@@ -67,13 +68,23 @@ def fitting_tasks(dh: DHChain, axis: str | None = None) -> tuple[Task, ...]:
 def _along(dh: DHChain, task: Task, axes: Sequence[str]) -> list[Task]:
     """The task by those of the axes by which it fits, the one that suits the arm best first."""
     ways = [task.along(axis) for axis in axes] if task.axis else [task]
-    rated = {way: _condition(dh, way) for way in ways if fits(dh, way)}
+    rated = {way: _condition(dh, way) * _level(dh, way) for way in ways if fits(dh, way)}
     best = max(rated.values(), default=0.0)
 
     def key(way: Task) -> tuple[bool, float]:
         return way.name != task.name or rated[way] < _AS_GOOD * best, -rated[way]
 
     return sorted(rated, key=key)
+
+
+def _level(dh: DHChain, task: Task) -> float:
+    """How much an elevation changes with the tilt of the tool in the middle of the joints' ranges: nothing
+    where its axis is vertical there, as both sides of that have one elevation; 1 for other tasks."""
+    if task.orientation != "pitch":
+        return 1.0
+    low, high = joint_box(dh, reach(dh))
+    middle = file_forward(dh, 0.5 * (low + high)[None])[0, 2, AXES.index(task.axis)]
+    return float(f"{np.sqrt(max(1.0 - middle**2, 0.0)):.2g}")
 
 
 def fits(dh: DHChain, task: Task) -> bool:
