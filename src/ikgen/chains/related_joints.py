@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -13,11 +13,12 @@ from lxml import etree
 from ikgen.errors import UnknownNameError, UsageError
 from ikgen.importers.urdf.urdf_tree import changed_tree
 from ikgen.importers.xml_document import children, parse_xml, shown_file
+from ikgen.model.arrays import Array
 from ikgen.model.chain import PRISMATIC, ActuatedJoint, Chain, ChainAxis
 from ikgen.model.joint_relation import Mimic
 from ikgen.model.joint_tree import JointTree, Limits
 
-__all__ = ["equal_stages", "related_tree", "shared_limits"]
+__all__ = ["equal_shares", "equal_stages", "related_tree", "shared_limits"]
 
 _SAME = 1e-9
 """Relative difference of the travels of two telescope stages that are equal."""
@@ -36,7 +37,8 @@ def related_tree(tree: JointTree, relations: Mapping[str, Mimic]) -> JointTree:
     root = parse_xml(source.text, shown_file(source))
     elements: dict[str, Any] = {e.get("name") or "": e for e in children(root, "joint")}
     limits = {j.name: j.limits for j in tree.joints if j.type.moves_on_one_axis}
-    for joint, relation in relations.items():
+    for joint in sorted(relations, key=lambda name: -_steps(relations, name)):
+        relation = relations[joint]
         for name in (joint, relation.joint):
             if name not in limits:
                 raise UnknownNameError("joint", name, list(limits))
@@ -51,6 +53,14 @@ def related_tree(tree: JointTree, relations: Mapping[str, Mimic]) -> JointTree:
         _limit(elements[name], limits[name])
     made = changed_tree(source, root)
     return replace(made, source=replace(made.source, sha256=source.sha256))
+
+
+def _steps(relations: Mapping[str, Mimic], joint: str) -> int:
+    """How many relations lead from a joint to what drives it: of more, the earlier its limits count."""
+    steps = 0
+    while joint in relations and steps < len(relations):
+        joint, steps = relations[joint].joint, steps + 1
+    return steps
 
 
 def _limit(element: Any, limits: Limits) -> None:
@@ -79,28 +89,41 @@ def shared_limits(relation: Mimic, joint: str, own: Limits, of_source: Limits) -
     return both
 
 
+def equal_shares(chain: Chain, held: Collection[str], told: Collection[str]) -> dict[str, Mimic]:
+    """The stages of telescopes that nothing else is told of, and what they follow; none where a stage is
+    held."""
+    found = equal_stages(chain)
+    named = {*found, *(stage.joint for stage in found.values())}
+    if not named.isdisjoint(held):
+        return {}
+    return {joint: stage for joint, stage in found.items() if joint not in told}
+
+
 def equal_stages(chain: Chain) -> dict[str, Mimic]:
     """Joints of a telescope, each with the same share as its first stage: neighbours that slide in one
-    direction with the same travel. By joint; empty where the chain has none."""
+    direction, or in the opposite one with the opposite sign, with the same travel. By joint; empty where
+    the chain has none."""
     found: dict[str, Mimic] = {}
-    first = before = None
+    first: ChainAxis | None = None
+    T = np.eye(3)  # from the axes of the last joint to those of the first stage
     for axis in chain.axes:
         joint = chain.joints[axis.driver]
         slides = axis.kind == PRISMATIC and joint.name == axis.name
-        if slides and first is not None and before is not None:
+        if slides and first is not None:
             lead = chain.joints[first.driver]
-            if _goes_on(before, axis) and _same_travel(lead, joint):
-                found[joint.name] = Mimic(lead.name, 1.0, joint.limits.lower - lead.limits.lower)
-                before = axis
+            T = T @ axis.T_prev_axis[:3, :3]
+            sign = _sense(first.axis, T @ axis.axis)
+            if sign and _same_travel(lead, joint):
+                begin = joint.limits.lower if sign > 0 else joint.limits.upper
+                found[joint.name] = Mimic(lead.name, sign, begin - sign * lead.limits.lower)
                 continue
-        first = before = axis if slides else None
+        first, T = axis if slides else None, np.eye(3)
     return found
 
 
-def _goes_on(before: ChainAxis, axis: ChainAxis) -> bool:
-    """Whether a slide moves as the one before it does."""
-    along = axis.T_prev_axis[:3, :3] @ axis.axis
-    return bool(np.allclose(along, before.axis, atol=_SAME_DIRECTION))
+def _sense(one: Array, other: Array) -> float:
+    """1 for directions that are the same, -1 for opposite ones, 0 for others."""
+    return next((s for s in (1.0, -1.0) if np.allclose(s * other, one, atol=_SAME_DIRECTION)), 0.0)
 
 
 def _same_travel(one: ActuatedJoint, other: ActuatedJoint) -> bool:

@@ -162,8 +162,8 @@ def _told(reading: Reading, path: Path, model: DHChain) -> Reading:
 
 def _coupled_chain(request: Request, tree: JointTree) -> tuple[JointTree, Chain, tuple[str, ...]]:
     """The tree with the relations between its joints, the chain that is meant, and the relations that were
-    chosen: where none is asked for, the stages of a telescope take equal shares, unless one is held."""
-    from ikgen.chains.related_joints import equal_stages, related_tree
+    chosen: the stages of a telescope that are told nothing else take equal shares, unless one is held."""
+    from ikgen.chains.related_joints import equal_shares, related_tree
     from ikgen.chains.selection import select_chain
     from ikgen.chains.several_sources import parted_tree, parts
 
@@ -171,13 +171,13 @@ def _coupled_chain(request: Request, tree: JointTree) -> tuple[JointTree, Chain,
     chain = select_chain(tree, request.base, request.tip, locked)
     followed = {joint: one.joint for joint, one in request.relations.items()}
     relations = request.relations | parts(request.sums)
-    stages = {} if request.couple else equal_stages(chain)
-    named = {*stages, *(stage.joint for stage in stages.values())}
-    if named & {*request.free}:
-        stages = {}
+    several = (request.sums | request.motors).values()
+    told = {*request.couple, *(name for one in several for name, _ in one.terms)}
+    stages = equal_shares(chain, request.free, told)
     if not relations and not stages:
         return tree, chain, ()
-    tree = related_tree(parted_tree(tree, request.sums, locked, followed), relations or stages)
+    parted = parted_tree(tree, request.sums, locked, followed)
+    tree = related_tree(parted, {**stages, **relations})
     words = tuple(f"{joint}={stage.words}" for joint, stage in stages.items())
     if stages:
         note = f"stages of a telescope take equal shares: --couple {' --couple '.join(words)}"
