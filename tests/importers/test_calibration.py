@@ -174,6 +174,7 @@ def test_what_is_no_calibration_is_refused(text: str, said: str, tmp_path: Path)
         (f"[[joints]]\na = {10**400}\n[[joints]]\n", "row 1, a .* not a finite number"),
         ("[[joints]\n", "not TOML"),
         ("\ufeff[[joints]]\nb = 1\n[[joints]]\n", "unknown entry 'b'"),
+        ("convention = 'craig'\n[[joints]]\n[[joints]]\n", "convention is 'craig'"),
     ],
 )
 def test_what_are_no_offsets_is_refused(text: str, said: str, tmp_path: Path) -> None:
@@ -217,10 +218,10 @@ def test_offsets_are_those_of_rows_with_the_numbers_added(name: str) -> None:
     q = np.random.default_rng(0).uniform(-1.0, 1.0, dh.dof)
     for i, row in enumerate(dh.rows):
         for entry in ("alpha", "a", "d", "theta"):
-            offsets = [dict.fromkeys(("alpha", "a", "d", "theta"), 0.0) for _ in dh.rows]
+            offsets = [dict.fromkeys(("alpha", "a", "d", "theta"), 0.0) for _ in (*dh.rows, "tip")]
             offsets[i][entry] = 3e-3
             T = np.array(dh.X_base)
-            for one, other, value in zip(dh.rows, offsets, row_values(dh, q), strict=True):
+            for one, other, value in zip(dh.rows, offsets[:-1], row_values(dh, q), strict=True):
                 theta, d = (value, one.d.nominal) if one.revolute else (one.theta.value, value)
                 T = T @ dh_link(
                     one.alpha.value + other["alpha"],
@@ -230,3 +231,26 @@ def test_offsets_are_those_of_rows_with_the_numbers_added(name: str) -> None:
                 )
             got = file_forward(offset_dh(dh, offsets), q)
             assert np.abs(got - T @ dh.X_tip).max() < 1e-12, (row.name, entry)
+
+
+def test_offsets_of_standard_rows_are_those_of_the_table_with_the_numbers_added(
+    tmp_path: Path,
+) -> None:
+    """Rows of Denavit and Hartenberg (1955): Rz(theta) Tz(d) Tx(a) Rx(alpha)."""
+    rows = [(0.4, 0.1, 1.5707963267948966), (0.05, 0.4, 0.3), (0.1, 0.2, -0.7)]
+    off = [{"alpha": 1e-3, "d": 2e-4}, {"a": -3e-4, "theta": 2e-3}, {"alpha": 4e-3, "a": 5e-4}]
+    lines = ['convention = "standard"']
+    offsets = list(lines)
+    for (d, a, alpha), one in zip(rows, off, strict=True):
+        lines += ["[[joints]]", 'type = "revolute"', f"alpha = {alpha}", f"a = {a}", f"d = {d}"]
+        offsets += ["[[joints]]", *(f"{name} = {value}" for name, value in one.items())]
+    table, own = tmp_path / "arm.toml", tmp_path / "own.toml"
+    table.write_text("\n".join(['name = "arm"', *lines]))
+    own.write_text("\n".join(offsets))
+    dh = read(Request(table, calibration=own)).dh
+    q = np.array([0.3, -0.8, 1.1])
+    T = np.eye(4)
+    for (d, a, alpha), one, turn in zip(rows, off, q, strict=True):
+        T = T @ dh_link(0.0, 0.0, turn + one.get("theta", 0.0), d + one.get("d", 0.0))
+        T = T @ dh_link(alpha + one.get("alpha", 0.0), a + one.get("a", 0.0), 0.0, 0.0)
+    np.testing.assert_allclose(file_forward(dh, q), T, atol=1e-14)

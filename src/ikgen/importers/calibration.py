@@ -2,7 +2,8 @@
 
 Two forms. YAML as `ur_description` reads it (`kinematics: shoulder: {x, y, z, roll, pitch, yaw}`, lengths
 in m and angles in rad): the origins of joints, by the link that they carry, in place of the file's. TOML as
-DH tables are written: `[[joints]]` with `alpha`, `a`, `d`, `theta` to add to the arm's modified rows.
+DH tables are written: `[[joints]]` with `alpha`, `a`, `d`, `theta` to add to the arm's rows, which are
+modified ones unless `convention` says "standard".
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ikgen.errors import BadDescriptionError, shown
+from ikgen.importers.dh.table_document import CONVENTIONS
 from ikgen.importers.merge_conflict import conflict_or
 from ikgen.importers.toml_text import parse_toml
 from ikgen.model.oddity import Oddity
@@ -136,7 +138,8 @@ def _origins(path: Path) -> dict[str, dict[str, float]]:
 
 
 def row_offsets(path: Path, rows: int) -> tuple[dict[str, float], ...]:
-    """What a calibration in TOML adds to each of the arm's modified rows: `ROW_ENTRIES`, in m and rad.
+    """What a calibration in TOML adds to each of the arm's modified rows: `ROW_ENTRIES`, in m and rad; the
+    last, to the link behind the rows, which a standard table has in its last row.
 
     Raises `BadDescriptionError` for another number of rows, unknown entries, and what is no number.
     """
@@ -146,15 +149,30 @@ def row_offsets(path: Path, rows: int) -> tuple[dict[str, float], ...]:
     except ValueError as error:
         hint = conflict_or(text, "write tables [[joints]]; calibrations in YAML end in .yaml")
         raise BadDescriptionError(f"not TOML: {error}", file=str(path), hint=hint) from None
+    convention = data.get("convention", CONVENTIONS[0])
+    if convention not in CONVENTIONS:
+        problem = f"the calibration's convention is {shown(convention)}"
+        hint = f"there is: {', '.join(CONVENTIONS)}"
+        raise BadDescriptionError(problem, file=str(path), hint=hint)
     joints = data.get("joints")
-    if set(data) != {"joints"} or not isinstance(joints, list) or len(joints) != rows:
+    if (
+        set(data) - {"convention"} != {"joints"}
+        or not isinstance(joints, list)
+        or len(joints) != rows
+    ):
         raise BadDescriptionError(
             f"no calibration of {rows} rows",
             file=str(path),
             hint=f"write {rows} tables [[joints]], one a row in order, with what its alpha, a, d, theta "
             "(rad, m) are off, none where that is nothing; ikgen inspect shows the rows",
         )
-    return tuple(dict(_row(joint, i, path)) for i, joint in enumerate(joints, start=1))
+    found = [dict(_row(joint, i, path)) for i, joint in enumerate(joints, start=1)]
+    nothing = dict.fromkeys(ROW_ENTRIES, 0.0)
+    before = [nothing, *found] if convention == "standard" else [*found, nothing]
+    return tuple(
+        {**link, "d": own["d"], "theta": own["theta"]}
+        for link, own in zip(before, [*found, nothing], strict=True)
+    )
 
 
 def _row(joint: Any, number: int, path: Path) -> Iterator[tuple[str, float]]:

@@ -66,7 +66,8 @@ def calibrated_dh(dh: DHChain, chain: Chain) -> DHChain:
 
 
 def offset_dh(dh: DHChain, offsets: Sequence[Mapping[str, float]]) -> DHChain:
-    """The rows of `dh` with file frames to whose rows the offsets alpha, a, d, theta are added."""
+    """The rows of `dh` with file frames to whose rows the offsets alpha, a, d, theta are added; the last of
+    these to the link behind the rows."""
     frames = [np.array(F) for F in dh.file_frames]
     for i, one in enumerate(offsets):
         # Rx and Tx commute, and so do Rz and Tz; a row's frame has both, the first row's behind the base
