@@ -36,8 +36,9 @@ def _passed_over(derivation: Derivation) -> str:
     if not derivation.passed_over:
         return ""
     names = " and ".join(f"'{name}'" for name in derivation.passed_over)
+    fits = "fits" if len(derivation.passed_over) == 1 else "fit"
     return (
-        f"code for {names}, which fits the arm better, failed its verification: what was made is for "
+        f"code for {names}, which {fits} the arm better, failed its verification: what was made is for "
         f"the task '{derivation.task.name}'"
     )
 

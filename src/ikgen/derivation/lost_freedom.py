@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import combinations
 from typing import TYPE_CHECKING
 
+from ikgen.model.counted import counted
 from ikgen.model.oddity import OddityKind
 
 if TYPE_CHECKING:
@@ -31,11 +32,12 @@ def lost_freedom(reading: Reading, held: Collection[str]) -> str:
     if not {dh.joints[j].name for j in joints}.isdisjoint(held):
         return ""
     *names, last = (f"'{dh.joints[j].name}'" for j in joints)
-    number, reason = f"{ways} way{'s' * (ways > 1)}", _reason(dh, joints)
+    number, reason, spare = counted(ways, "way"), _reason(dh, joints), len(joints) - ways
+    some = "one of them is" if spare == 1 else f"{spare} of them are"
     return (
         f"joints {', '.join(names)} and {last} move the tip in {number} only"
         f"{f', as they {reason}' * bool(reason)}: a pose has infinitely many "
-        "solutions unless one of them is held or locked"
+        f"solutions unless {some} held or locked"
     )
 
 

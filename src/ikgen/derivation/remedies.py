@@ -50,7 +50,7 @@ def helped(error: UnsolvedChainError, request: Request, progress: Progress) -> U
     found = [a for a in tried if a.closed]
     lines = []
     if own is not None:
-        lines.append(replace(request, task=None, tool_axis=None).command())
+        lines.append(request.without_task.command())
         most = counted(own.max_solutions, "solution")
         lines.append(f"without a task that is asked for the arm gets '{own.task}' (at most {most})")
     elif found:

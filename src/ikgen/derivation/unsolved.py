@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 from collections import Counter
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from ikgen.emit.derivation import Unsolved
@@ -48,7 +47,7 @@ def unsolved_error(found: Unsolved, request: Request) -> UnsolvedChainError:
     cause, advice = _same_line(dh) or _counted(dh, task)
     hint = f"{request.command()} {advice}"
     if request.task is not None and dh.moving > task.freedoms:
-        hint = f"{replace(request, task=None, tool_axis=None).command()}\nor {hint}"
+        hint = f"{request.without_task.command()}\nor {hint}"
     return UnsolvedChainError(
         f"no closed form found for the task '{task.name}': {cause}",
         unsolved=found,

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -100,6 +100,11 @@ class Request:
     def table(self) -> bool:
         """Whether the robot is a DH table."""
         return is_table(self.robot)
+
+    @property
+    def without_task(self) -> Request:
+        """As if no task were asked for."""
+        return replace(self, task=None, tool_axis=None)
 
     @property
     def relations(self) -> dict[str, Mimic]:
