@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -125,12 +126,22 @@ def _values(module: SolverModule, package: str) -> dict[str, object]:
         "joint_names": tuple(joint.name for joint in module.dh.joints),
         "free_names": module.held,
         "periods": [number(period) for period in periods],
+        "held_turn": _held_turn(module) if len(module.held) == 1 else 0.0,
         "version": _version(module.generator_version),
         "comment": comment,
         "number": number,
         "quoted": literal,
         "xml": escape,
     }
+
+
+def _held_turn(module: SolverModule) -> float:
+    """How far apart (rad) values of what is held are that `self_motion` tells once; 0 where all."""
+    if module.dh.arm_angle:
+        return 2.0 * math.pi
+    held = module.free_indices[0]
+    limits = module.dh.joints[held].limits
+    return 0.0 if math.isfinite(limits.upper - limits.lower) else module.period(held)
 
 
 def _version(generator: str) -> str:

@@ -51,6 +51,31 @@ class FreeSequence {
   double cells_ = 1.0, count_ = 0.0;
 };
 
+// Values of intervals that lie in the window: of each the one nearest to the start that is a step, or half its width,
+// inside, then all middles, then all ends; the nearest interval first. turn: how far apart values are that are the
+// same; 0 where none are.
+template <class Intervals>
+std::vector<double> interval_values(const Intervals& intervals, const Window& window, double turn, double step) {
+  std::vector<Window> parts;
+  for (const auto& one : intervals) {
+    const double first = turn > 0.0 ? std::ceil((window.low - kTolerance - one.high) / turn) : 0.0;
+    const double last = turn > 0.0 ? std::floor((window.high + kTolerance - one.low) / turn) : 0.0;
+    for (double k = first; k <= last; k += 1.0) {
+      const double low = std::max(one.low + k * turn, window.low), high = std::min(one.high + k * turn, window.high);
+      if (low > high + kTolerance) continue;
+      const double inside = std::min(step, 0.5 * std::abs(high - low));
+      parts.push_back({low, std::max(low + inside, std::min(window.start, high - inside)), high});
+    }
+  }
+  const auto away = [&](const Window& part) { return std::abs(part.start - window.start); };
+  std::stable_sort(parts.begin(), parts.end(), [&](const Window& a, const Window& b) { return away(a) < away(b); });
+  std::vector<double> out;
+  for (const Window& part : parts) out.push_back(part.start);
+  for (const Window& part : parts) out.push_back(0.5 * (part.low + part.high));
+  for (const Window& part : parts) out.insert(out.end(), {part.low, part.high});
+  return out;
+}
+
 // All values at multiples of the resolution (positive) from the seed's.
 inline std::vector<FreeValues> grid(const Windows& all, double resolution) {
   std::vector<FreeValues> out(1);
