@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from tests.support.moveit_arms import Arm, compiled_arm, missing_tools
+from tests.support.moveit_arms import Arm, compiled_arm, missing_tools, running
 from tests.support.moveit_driver import Plugin
 
 
@@ -30,8 +30,5 @@ def arm(request: pytest.FixtureRequest, moveit_folder: Path) -> Arm:
 @pytest.fixture
 def plugin(arm: Arm) -> Iterator[Plugin]:
     """The plugin over the arm's own tree; not yet initialized."""
-    running = Plugin(arm.program, len(arm.joints))
-    running.load(arm.tree)
-    running.group("arm", arm.joints)
-    yield running
-    running.close()
+    with running(arm) as plugin:
+        yield plugin

@@ -5,6 +5,8 @@ from __future__ import annotations
 import dataclasses
 import functools
 import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -12,7 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from tests.support.moveit_driver import compile_driver
+from tests.support.moveit_driver import Plugin, compile_driver
 from tests.support.solving import FIXTURES
 
 from ikgen.derivation.derive import derive
@@ -26,8 +28,8 @@ from ikgen.records.request import Request
 from ikgen.verify.runners.cpp_toolchain import find_eigen
 
 __all__ = [
-    "FRANKA", "KUKA", "MANIPULATOR", "Arm", "compiled_arm", "fixed", "missing_tools", "module_of",
-    "needs", "offset", "with_joint", "write_package",
+    "FRANKA", "KUKA", "MANIPULATOR", "Arm", "compiled_arm", "fixed", "made_arm", "missing_tools",
+    "module_of", "needs", "offset", "running", "with_joint", "write_package",
 ]  # fmt: skip
 
 Array = NDArray[np.float64]
@@ -119,6 +121,24 @@ class Arm:
 
     def pose(self, q: Array) -> Array:
         return file_forward(self.module.dh, q)
+
+
+def made_arm(robot: Path, **options: Any) -> Arm:
+    """The arm of a URDF, its driver compiled beside the file."""
+    module = derive(Request(robot, **options)).module
+    program = robot.with_suffix("")
+    compile_driver(write_package(module, robot.parent), "hpp", program)
+    return Arm(module, load_tree(robot), program)
+
+
+@contextmanager
+def running(arm: Arm, tree: JointTree | None = None) -> Iterator[Plugin]:
+    """The plugin over the arm's own tree, or another; not yet initialized."""
+    plugin = Plugin(arm.program, len(arm.joints))
+    plugin.load(tree or arm.tree)
+    plugin.group("arm", arm.joints)
+    yield plugin
+    plugin.close()
 
 
 @functools.cache

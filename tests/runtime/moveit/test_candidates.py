@@ -33,6 +33,18 @@ int main() {
     for (const Joints& q : candidates(query, {3.0, 40.0})) std::printf("%.17g %.17g\n", q[0], q[1]);
     return 0;
   }
+  if (kind == 3.0) {  // a window, the turn, the step, how many intervals, then these
+    struct Interval { double low, high; } next;
+    std::vector<Interval> intervals;
+    read(x, 6);
+    for (int i = 0; i < static_cast<int>(x[5]); ++i) {
+      read(&next.low, 1), read(&next.high, 1);
+      intervals.push_back(next);
+    }
+    const Window window = {x[0], x[1], x[2]};
+    for (const double one : interval_values(intervals, window, x[3], x[4])) std::printf("%.17g\n", one);
+    return 0;
+  }
   read(x, 8);  // two windows, the resolution, how many
   const Windows windows = {{{x[0], x[1], x[2]}, {x[3], x[4], x[5]}}};
   FreeSequence sequence(windows, x[6]);
@@ -42,7 +54,7 @@ int main() {
   for (const FreeValues& one : found) std::printf("%.17g %.17g\n", one[0], one[1]);
 }
 """
-ROWS, SEQUENCE, GRID = 0.0, 1.0, 2.0
+ROWS, SEQUENCE, GRID, INTERVALS = 0.0, 1.0, 2.0, 3.0
 
 
 @pytest.fixture(scope="module")
@@ -116,3 +128,46 @@ def test_grids_are_multiples_of_the_resolution_from_the_seed(program: Path) -> N
     first = [-1.0 + 0.25 * k for k in range(13)]
     assert found == [[x, y] for x in first for y in (0.0, 0.25)]
     assert feed(program, [GRID, *WINDOWS, 9.0, 0.0]) == [[0.5, 0.0]]
+
+
+def interval_values(
+    program: Path,
+    window: tuple[float, float, float],
+    *intervals: tuple[float, float],
+    turn: float = 0.0,
+    step: float = 0.25,
+) -> list[float]:
+    ends = [end for interval in intervals for end in interval]
+    found = feed(program, [INTERVALS, *window, turn, step, len(intervals), *ends])
+    return [value for (value,) in found]
+
+
+def test_intervals_give_the_nearest_value_a_step_inside_then_middles_then_ends(
+    program: Path,
+) -> None:
+    window = (-8.0, 1.0, 8.0)
+    assert interval_values(program, window, (4.0, 6.0)) == [4.25, 5.0, 4.0, 6.0]
+    assert interval_values(program, window, (-3.0, 7.0)) == [1.0, 2.0, -3.0, 7.0]
+    assert interval_values(program, window, (4.0, 4.125)) == [4.0625, 4.0625, 4.0, 4.125]
+    assert interval_values(program, window, (4.0, 4.0)) == [4.0] * 4
+    several = interval_values(program, window, (4.0, 6.0), (-3.0, -1.0))
+    assert several == [-1.25, 4.25, -2.0, 5.0, -3.0, -1.0, 4.0, 6.0]
+    assert interval_values(program, window) == []
+
+
+def test_of_intervals_only_what_the_window_has_counts(program: Path) -> None:
+    window = (0.0, 1.0, 2.0)
+    assert interval_values(program, window, (-5.0, -1.0), (2.1, 3.0)) == []
+    assert interval_values(program, window, (1.5, 9.0)) == [1.75, 1.75, 1.5, 2.0]
+    assert interval_values(program, window, (2.0 + 0.9e-9, 3.0))  # round-off leaves none out
+    assert interval_values(program, window, (2.0 + 1.1e-9, 3.0)) == []
+    endless = (-math.inf, 1.0, math.inf)
+    assert interval_values(program, endless, (90.0, 92.0)) == [90.25, 91.0, 90.0, 92.0]
+
+
+def test_intervals_stand_for_those_that_are_turns_away(program: Path) -> None:
+    once = interval_values(program, (18.0, 20.0, 22.0), (-3.0, -2.0), turn=8.0)
+    assert once == [21.25, 21.5, 21.0, 22.0]
+    twice = interval_values(program, (10.0, 20.0, 26.0), (-3.0, -2.0), turn=8.0)
+    assert twice == [21.25, 13.75, 21.5, 13.5, 21.0, 22.0, 13.0, 14.0]
+    assert interval_values(program, (15.0, 17.0, 20.0), (-3.0, -2.0), turn=8.0) == []
