@@ -9,13 +9,14 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from tests.support.fake_arms import six_axis_oracle
+from tests.support.rolling_forearm import FLAT_FOLDS, forearm_file, forearm_under_test
 
 from ikgen.importers.dh.dh_table import read_dh_table
 from ikgen.tasks import find_task
 from ikgen.verify.arm import ArmUnderTest, arm_under_test
 from ikgen.verify.oracle import Oracle, oracle_from_dh
 from ikgen.verify.search import converge
-from ikgen.verify.singularities import on_continuum
+from ikgen.verify.singularities import on_continuum, singular_configurations
 from ikgen.verify.task_space import task_space
 
 TWO_FOLDS = [
@@ -138,3 +139,42 @@ def test_an_isolated_row_that_is_nearly_singular_is_no_continuum(tmp_path: Path)
     assert 1e-11 < arm.sigma(row)[0] < 1e-10 and arm.sigma(on_it)[0] < 1e-14
     q = np.concatenate([row, on_it])
     assert on_continuum(arm, q, arm.oracle.forward(q)).tolist() == [False, True]
+
+
+@pytest.mark.parametrize("axis", FLAT_FOLDS)
+def test_where_branches_meet_is_no_continuum_though_steps_leave_rounding(
+    tmp_path: Path, axis: str
+) -> None:
+    """Farther on they leave more, to one side or both."""
+    arm = forearm_under_test(forearm_file(tmp_path / "forearm.urdf"), axis)
+    q = np.array(FLAT_FOLDS[axis])
+    targets = arm.oracle.forward(q)
+    assert (arm.sigma(q) < 1e-11).all()
+    ends, reached = converge(arm, q + 0.2 * direction(arm, q), targets, enough=2e-13)
+    far = np.abs(ends - q).max(axis=1) > 0.05
+    assert (reached & far).any(), "no step leaves the solution: the test shows nothing"
+    assert not on_continuum(arm, q, targets).any()
+
+
+def test_the_same_arm_has_continua(tmp_path: Path) -> None:
+    """Yaw and roll turn against each other below a tool that points straight up."""
+    arm = forearm_under_test(forearm_file(tmp_path / "forearm.urdf"), "z")
+    q = singular_configurations(arm, 300, np.random.default_rng(0))
+    targets = arm.oracle.forward(q)
+    upright = targets[:, 2, 2] > 1.0 - 1e-15
+    assert upright.sum() > 20
+    assert on_continuum(arm, q[upright], targets[upright]).all()
+
+
+@pytest.mark.parametrize("tool", [0.0, 3e-13])
+def test_what_rounding_alone_breaks_is_a_continuum(tmp_path: Path, tool: float) -> None:
+    """All around the tip moves by less than rows may be off."""
+    arm = three_joints((0.69, 0.62, tool, 0.69, 0.15, 1.58, 0.83), tmp_path)
+    q = np.array([[0.1, -0.5, -1.8]])
+    assert on_continuum(arm, q, arm.oracle.forward(q)).all()
+
+
+def test_a_tip_that_turns_about_a_point_nearby_is_on_no_continuum(tmp_path: Path) -> None:
+    arm = three_joints((0.69, 0.62, 1e-9, 0.69, 0.15, 1.58, 0.83), tmp_path)
+    q = np.array([[0.1, -0.5, -1.8]])
+    assert not on_continuum(arm, q, arm.oracle.forward(q)).any()
