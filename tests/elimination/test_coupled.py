@@ -71,7 +71,7 @@ def general_table(folder: Path) -> Path:
 def solved(plan: EliminationPlan, poses: Array) -> list[Array]:
     find = plan.routine.find
     assert isinstance(find, type)
-    finder = find(plan.motions, plan.crowded)
+    finder = find(plan.motions, plan.crowded, plan.share)
     made = Plan(plan.length, plan.eliminations, TURNS, finder, motions=plan.motions)
     return six_joints_batch(plan.frames, made, poses)
 

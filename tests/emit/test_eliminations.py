@@ -31,7 +31,7 @@ def solver_module(slide: int | None, *, both: bool = False) -> SolverModule:
     length = typical_length(frames, turning)
     resultants = ((0, 0),) if slide is None else ()
     plan = EliminationPlan(frames, length, ((1, 0, 0),), 1.0, resultants, turning, both=both)
-    program = elimination_program(dh, 16, both=both)
+    program = elimination_program(dh, plan.routine, 16)
     return module_around(program, dh, plan=plan)
 
 

@@ -7,6 +7,7 @@ import pytest
 from ikgen.emit.cpp.header_bundle import bundle
 from ikgen.runtime.python.elimination.coupled_angle import CoupledAngle
 from ikgen.runtime.python.elimination.coupled_both import CoupledBothAngle
+from ikgen.runtime.python.elimination.coupled_shared import CoupledSharedAngle
 from ikgen.runtime.python.elimination.general_6r import candidates
 from ikgen.runtime.python.elimination.one_slide import one_slide_candidates
 from ikgen.runtime.python.elimination.three_slides import three_slide_candidates
@@ -28,6 +29,11 @@ ROUTINES = {
     "two_slides": (two_slide_candidates, "elimination/two_slides.hpp", "struct TwoSlides"),
     "coupled_6r": (CoupledAngle(()), "elimination/coupled_6r.hpp", "struct Coupled6r"),
     "coupled_both": (CoupledBothAngle(()), "elimination/coupled_both.hpp", "struct CoupledBoth"),
+    "coupled_shared": (
+        CoupledSharedAngle(()),
+        "elimination/coupled_shared.hpp",
+        "struct CoupledShared",
+    ),
     "three_slides": (three_slide_candidates, "elimination/three_slides.hpp", "struct ThreeSlides"),
 }
 

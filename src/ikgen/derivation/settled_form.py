@@ -26,7 +26,7 @@ def settled_form(found: ClosedForm, progress: Progress) -> tuple[ClosedForm, Pro
     dh = found.reading.dh
     if found.plan:
         plan = found.plan
-        return found, elimination_program(dh, plan.most, plan.tool, both=plan.both)
+        return found, elimination_program(dh, plan.routine, plan.most, plan.tool)
 
     def solve(passed_over: tuple[Variable, ...]) -> SolutionGraph:
         return by_rules(dh, found.task, progress, passed_over)

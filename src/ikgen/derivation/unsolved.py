@@ -105,6 +105,8 @@ def _known_gaps(derivation: Derivation) -> list[str]:
 
 def _counted(dh: DHChain, task: Task) -> tuple[str, str]:
     """What the numbers of joints and of freedoms tell, and what to add to the command."""
+    from ikgen.elimination.refusal import coupled_refusal
+    from ikgen.tasks import POSE
     from ikgen.tasks.fitting import freedoms_moved
 
     moving = dh.moving
@@ -121,6 +123,10 @@ def _counted(dh: DHChain, task: Task) -> tuple[str, str]:
     if able < moving:
         cause = f"the joints move {able} of the {task.freedoms} freedoms that the task fixes"
         return cause, "--task TASK: `ikgen inspect` lists those that fit"
+    refusal = coupled_refusal(dh) if task.name == POSE.name else None
+    if refusal is not None:
+        cause, name = refusal
+        return cause, f"--lock {name}=VALUE, or with followers of smaller ratios"
     return (
         "the rules and the elimination leave joints open",
         "--free JOINT, or --task TASK; `ikgen report` shows what is left",

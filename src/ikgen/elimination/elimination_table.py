@@ -8,6 +8,7 @@ from ikgen.program import routines
 from ikgen.program.routines import Routine
 from ikgen.runtime.python.elimination.coupled_angle import CoupledAngle
 from ikgen.runtime.python.elimination.coupled_both import CoupledBothAngle
+from ikgen.runtime.python.elimination.coupled_shared import CoupledSharedAngle
 from ikgen.runtime.python.elimination.general_6r import Finder, candidates
 from ikgen.runtime.python.elimination.one_slide import (
     one_slide_both_candidates,
@@ -34,6 +35,7 @@ class EliminationRoutine:
     most: int | None = None
     both: bool = False
     coupled: bool = False
+    shared: bool = False
 
 
 ELIMINATIONS = (
@@ -48,15 +50,18 @@ ELIMINATIONS = (
     EliminationRoutine(
         routines.COUPLED_BOTH, "coupled 6R", 0, CoupledBothAngle, both=True, coupled=True
     ),
+    EliminationRoutine(
+        routines.COUPLED_SHARED, "coupled 6R", 0, CoupledSharedAngle, coupled=True, shared=True
+    ),
 )
 
 
 def elimination_routine(
-    slides: int, *, both: bool = False, coupled: bool = False
+    slides: int, *, both: bool = False, coupled: bool = False, shared: bool = False
 ) -> EliminationRoutine:
     """The elimination of six joints of which so many slide."""
-    asked = (slides, both, coupled)
-    return next(row for row in ELIMINATIONS if (row.slides, row.both, row.coupled) == asked)
+    asked = (slides, both, coupled, shared)
+    return next(r for r in ELIMINATIONS if (r.slides, r.both, r.coupled, r.shared) == asked)
 
 
 def finder(turning: Turning, *, both: bool = False) -> Finder:

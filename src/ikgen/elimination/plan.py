@@ -67,7 +67,8 @@ class EliminationPlan:
     that turn open; it is none of the arm's joints. steady: whether a resultant has separate roots at the
     held joints' special values too, among which their defaults often are; without one the eigenproblem
     serves there, at twenty times the cost. both: whether both angles beside the hidden one are taken by
-    half angles, as either alone leaves no rank.
+    half angles, as either alone leaves no rank. share: how many solutions may share a value of the joint
+    that turns several axes; bound: how many there are at most, where they do.
     """
 
     frames: Array
@@ -82,12 +83,18 @@ class EliminationPlan:
     tool: int | None = None
     steady: bool = True
     both: bool = False
+    share: int = 1
+    bound: int = 0
 
     @property
     def routine(self) -> EliminationRoutine:
         """Which elimination it is."""
-        coupled = bool(self.motions)
-        return elimination_routine(self.turning.count(False), both=self.both, coupled=coupled)
+        return elimination_routine(
+            self.turning.count(False),
+            both=self.both,
+            coupled=bool(self.motions),
+            shared=self.share > 1,
+        )
 
     @property
     def coupled(self) -> int:
@@ -103,7 +110,7 @@ class EliminationPlan:
     @property
     def most(self) -> int:
         """Solutions at most, a power of two."""
-        return self.routine.most or 1 << (2 * self.degree - 1).bit_length()
+        return self.routine.most or 1 << ((self.bound or 2 * self.degree) - 1).bit_length()
 
     @property
     def usable(self) -> bool:

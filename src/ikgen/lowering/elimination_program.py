@@ -6,7 +6,7 @@ import numpy as np
 
 from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
-from ikgen.elimination.elimination_table import elimination_routine
+from ikgen.elimination.elimination_table import EliminationRoutine
 from ikgen.kinematics.whole_turns import middle_of
 from ikgen.lowering.frames import file_frames, operand_of
 from ikgen.lowering.joint_values import joint_expression, variable_lets
@@ -20,12 +20,11 @@ __all__ = ["elimination_program"]
 
 
 def elimination_program(
-    dh: DHChain, most: int, tool: int | None = None, *, both: bool = False
+    dh: DHChain, routine: EliminationRoutine, most: int, tool: int | None = None
 ) -> Program:
-    """All joints that are not held from one call of an elimination (Raghavan and Roth 1993), which has at
+    """All joints that are not held from one call of the `routine` (Raghavan and Roth 1993), which has at
     `most` so many solutions. `tool`: the tool's axis (0: x) whose direction alone is read beside the
-    position; the last joint that the elimination finds turns about it, and is none of the arm's. `both`: by
-    half angles of both angles beside the hidden one."""
+    position; the last joint that the elimination finds turns about it, and is none of the arm's."""
     columns = range(4) if tool is None else (tool, 3)
     pose = tuple(PoseEntry(i, j) for i in range(3) for j in columns)
     completed, entries = _whole_pose(tool)
@@ -40,8 +39,6 @@ def elimination_program(
     found = tuple(name for j in moving for name in _names(dh, j))
     if tool is not None:
         found += (f"c{dh.dof + 1}", f"s{dh.dof + 1}")
-    slides = sum(not dh.lead_row(j).revolute for j in moving)
-    routine = elimination_routine(slides, both=both, coupled=len(dh.rows) > dh.dof)
     call = Call(routine.called, (*entries, *given), found)
     values = [_value(dh, j) for j in moving]
     body: tuple[Statement, ...] = (

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 __all__ = [
     "COUPLED_6R",
     "COUPLED_BOTH",
+    "COUPLED_SHARED",
     "GENERAL_6R",
     "ONE_SLIDE",
     "ONE_SLIDE_BOTH",
@@ -91,12 +92,16 @@ COUPLED_BOTH = Routine(
     "coupled_both", _TAKEN, "the same where half angles of one angle leave no rank",
     "elimination/coupled_both.hpp", "CoupledBoth",
 )  # fmt: skip
+COUPLED_SHARED = Routine(
+    "coupled_shared", _TAKEN, "the same where several solutions share an angle of that joint",
+    "elimination/coupled_shared.hpp", "CoupledShared",
+)  # fmt: skip
 
 ROUTINES = {
     one.name: one
     for one in (
         TRIG_QUARTIC, TRIG_QUARTIC_WIDE, TRIG_POLYNOMIAL, GENERAL_6R, ONE_SLIDE, ONE_SLIDE_BOTH,
-        TWO_SLIDES, THREE_SLIDES, COUPLED_6R, COUPLED_BOTH,
+        TWO_SLIDES, THREE_SLIDES, COUPLED_6R, COUPLED_BOTH, COUPLED_SHARED,
     )
 }  # fmt: skip
 """By name. Pose: the entries r11, r12, r13, px, r21, ... of its upper three rows. Joints, base to tip:

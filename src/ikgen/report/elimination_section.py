@@ -48,6 +48,12 @@ _COUPLED = (
     "Newton steps sharpen each solution, and forward kinematics decides. Where the loop begins, and "
     "in which direction it is read, was chosen by trying all ways on configurations of this arm."
 )
+_SHARED = (
+    "Of this arm {share} solutions have each value of that angle in common, and the twelve equations lose "
+    "as much rank there: {size} sums of them, and as many of their unknowns, have the determinant meant, "
+    "with simple roots, some of which are no solutions. In place of the null vector three sums of the six "
+    "equations behind give the one angle, as roots of degree 3, and the largest of the six the other."
+)
 _PARALLEL = (
     "Two axes of this arm are parallel. An elimination about these is tried first: the directions of the "
     "axes beside, and the way from one to the other, turn with the two angles that are left. Products of "
@@ -64,13 +70,16 @@ def elimination_section(
     parallel: bool = False,
     coupled: int = 0,
     both: bool = False,
+    share: int = 1,
 ) -> list[Block]:
     """The elimination of six joints of which some slide, in words and equations; `order` names the joints
     as this arm's loop reads them; `parallel`: an elimination about two parallel axes comes first;
     `coupled`: the degree in the angle of a joint that turns several axes, 0 where none does; `both`: by
-    half angles of both angles beside the hidden one."""
+    half angles of both angles beside the hidden one; `share`: how many solutions have an angle of the
+    coupled joint in common."""
     if coupled:
-        return [Paragraph((_COUPLED.format(degree=coupled),))]
+        more = [_SHARED.format(share=share, size=13 - share)] * (share > 1)
+        return [Paragraph((text,)) for text in (_COUPLED.format(degree=coupled), *more)]
     if slides >= 2:
         return [Paragraph((_TWO_SLIDES if slides == 2 else _THREE_SLIDES,))]
     first = [Paragraph((_PARALLEL,))] if parallel else []

@@ -82,6 +82,7 @@ def _solution(page: SolvedPage) -> list[Block]:
             parallel=plan.parallel is not None,
             coupled=plan.degree,
             both=plan.both,
+            share=plan.share,
         )
         if page.example is not None:
             blocks += roots_blocks(page.reading.dh, plan, page.example)

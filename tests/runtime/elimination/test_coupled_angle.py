@@ -11,9 +11,9 @@ from ikgen.runtime.python.elimination.coupled_angle import (
     _NEAR,
     _NODES,
     _REAL,
-    _circle_roots,
     _close_roots,
     _roots,
+    circle_roots,
 )
 from ikgen.runtime.python.elimination.hidden_angle import real_angles
 
@@ -64,7 +64,7 @@ def test_roots_of_the_circle_s_polynomial_are_all_found(degree: int) -> None:
         c[:, :1].conj() / c[:, -1:]
     )  # the last is the first's conjugate, as of real values
     c /= np.sqrt(c[:, :1] * c[:, -1:])
-    found = _circle_roots(c)
+    found = circle_roots(c)
     off = np.abs(found[:, :, None] / wanted[:, None, :] - 1.0).min(axis=1)
     assert found.shape == wanted.shape
     assert off.max() < 1e-6
@@ -73,7 +73,7 @@ def test_roots_of_the_circle_s_polynomial_are_all_found(degree: int) -> None:
 def test_roots_at_nodes_and_far_from_the_circle_are_found() -> None:
     """Of `1 + cos t` and of `sin t`, which vanish at nodes, and of a constant: roots 0 and none."""
     c = np.array([[0.5, 1.0, 0.5], [0.5j, 0.0, -0.5j], [0.0, 1.0, 0.0]])
-    found = _circle_roots(c)
+    found = circle_roots(c)
     np.testing.assert_allclose(found[0], -1.0, atol=1e-7)
     np.testing.assert_allclose(np.sort(found[1].real), [-1.0, 1.0], atol=1e-14)
     size = np.sort(np.abs(found[2]))

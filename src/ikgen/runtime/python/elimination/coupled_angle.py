@@ -24,7 +24,7 @@ from ikgen.runtime.python.elimination.general_6r import Candidates, Elimination
 from ikgen.runtime.python.elimination.hidden_angle import lift, real_angles
 from ikgen.runtime.python.rows.solution_rows import rows_of
 
-__all__ = ["CoupledAngle", "coupled_determinants"]
+__all__ = ["CoupledAngle", "circle_roots", "coupled_determinants"]
 
 Complex = NDArray[np.complex128]
 
@@ -46,10 +46,12 @@ _CHEBYSHEV = np.linalg.inv(np.polynomial.chebyshev.chebvander(_NODES, _CLOSE))
 class CoupledAngle:
     """Finds candidates of a chain in which one joint, and no other, turns several axes: `motions` in their
     order along the chain. An elimination's third number is the degree in that joint's angle. At `crowded`
-    angles (rad) the determinant has roots at every pose, so many each; it is looked at there by itself."""
+    angles (rad) the determinant has roots at every pose, so many each; it is looked at there by itself. At
+    most `share` solutions have an angle of that joint in common."""
 
     motions: tuple[Motion, ...]
     crowded: tuple[tuple[float, int], ...] = ()
+    share: int = 1
 
     def __call__(
         self, F: Sequence[Array], T: Array, elimination: Elimination, _: tuple[bool, ...]
@@ -61,13 +63,14 @@ class CoupledAngle:
         loop = CoupledLoop(self.motions, [rows_of(frame, pose) for frame in F], elimination)
         at = loop.equations(T[pose], angle[:, None])
         k, pair, true = self._pairs(at.A[:, 0], pose, angle)
-        least = np.minimum(least, np.bincount(pose[true], minlength=len(T)))
+        least = np.minimum(least * self.share, np.bincount(pose[true], minlength=len(T)))
         return pose[k], loop.completed(at, k, angle, pair), least, clear
 
-    def _pairs(self, A: Array, pose: Index, angle: Array) -> tuple[Index, Array, Flags]:
+    def _pairs(self, A: Array, pose: Index, angle: Array) -> tuple[Index, Array, Index]:
         """theta_4, theta_5 from the equations A (k, 6, 9) at roots (k,) of poses (k,), both in order:
-        indices into k, pairs of angles (m, 2); and at which roots (k,) the equations have a solution."""
-        return *null_angles(lift(A), pose, angle), np.ones(len(A), dtype=bool)
+        indices into k, pairs of angles (m, 2); and the indices into k of roots with a solution, as often as
+        they have one."""
+        return *null_angles(lift(A), pose, angle), np.arange(len(A))
 
     def _determinants(
         self, F: Sequence[Array], T: Array, elimination: Elimination, nodes: Array
@@ -167,7 +170,7 @@ def _roots(values: Array, degree: int) -> tuple[Complex, Flags]:
     which are `_sure`."""
     harmonics = np.arange(-degree, degree + 1)
     c, lead = _in_units(np.fft.fft(values, axis=1)[:, harmonics])
-    z = _circle_roots(c)
+    z = circle_roots(c)
     size = np.abs(z)
     roots: Complex = _FIRST_NODE + np.angle(z) - 1j * np.log(size)
     with np.errstate(all="ignore"):
@@ -183,7 +186,7 @@ def _in_units(c: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
     return c, np.where(np.abs(c[:, -1:]) < 1e-300, 1e-300, c[:, -1:])
 
 
-def _circle_roots(c: Complex) -> Complex:
+def circle_roots(c: Complex) -> Complex:
     """The roots z (N, 2 degree) of sums of `c_k z^k`, c (N, 2 degree + 1), real on the unit circle: by
     values at as many angles as there are c, of which a trigonometric polynomial is a sum over half-angle
     cosecants (Henrici 1979). Over the one about the angle where it is largest that is rational in the

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ikgen.runtime.python.arm.chain_kinematics import Motion
-from ikgen.runtime.python.arrays.array_types import Array, Flags, Index
+from ikgen.runtime.python.arrays.array_types import Array, Index
 from ikgen.runtime.python.elimination.both_half_angles import lift_both, null_pairs
 from ikgen.runtime.python.elimination.coupled_angle import CoupledAngle
 from ikgen.runtime.python.elimination.coupled_loop import CoupledLoop
@@ -32,11 +32,11 @@ class CoupledBothAngle(CoupledAngle):
     """Finds candidates by half angles of both angles beside the coupled one; an elimination's third number
     is the degree in that."""
 
-    def _pairs(self, A: Array, pose: Index, angle: Array) -> tuple[Index, Array, Flags]:
+    def _pairs(self, A: Array, pose: Index, angle: Array) -> tuple[Index, Array, Index]:
         sigma, rows = np.linalg.svd(lift_both(A))[1:]
         near = np.flatnonzero(sigma[:, 15] < _NEAR * sigma[:, 0])
         k, pair = null_pairs(rows[near], sigma[near], pose[near], angle[near])[:2]
-        return near[k], pair, np.asarray(sigma[:, 15] < _TRUE * sigma[:, 0])
+        return near[k], pair, np.flatnonzero(sigma[:, 15] < _TRUE * sigma[:, 0])
 
     def _determinants(
         self, F: Sequence[Array], T: Array, elimination: Elimination, nodes: Array
