@@ -22,9 +22,8 @@ def coupled_refusal(dh: DHChain) -> tuple[str, str] | None:
         return None
     if len(several) > 1:
         names = " and ".join(f"'{name}'" for name in several)
-        return f"the joints {names} turn several axes each, and an elimination hides one", several[
-            0
-        ]
+        cause = f"the joints {names} turn several axes each, and an elimination hides one"
+        return cause, several[0]
     if not all(row.revolute for row in moving):
         return None
     degree = least_degree(held_frames(dh), axis_motions(dh, moving))

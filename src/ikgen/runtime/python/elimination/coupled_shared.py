@@ -63,9 +63,8 @@ def _both_angles(A: Array) -> tuple[Index, Array, Array]:
     t4 = np.angle(z[k, root])
     P = _at(terms[k], t4)
     row = np.argmax((P * P).sum(axis=2), axis=1)
-    one, c, s = P[
-        np.arange(len(k)), row
-    ].T  # all rows are like it where two theta_5 go with theta_4
+    # all rows are like the largest where two theta_5 go with theta_4
+    one, c, s = P[np.arange(len(k)), row].T
     size = np.hypot(c, s)
     half = np.arccos(np.clip(-one / np.maximum(size, 1e-300), -1.0, 1.0))
     t5 = np.arctan2(s, c) + np.stack([half, -half])
