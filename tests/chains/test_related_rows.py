@@ -64,6 +64,26 @@ def test_the_follower_moves_with_its_source(table: Path, follower: str, source: 
     )
 
 
+@pytest.mark.parametrize("order", [("tilt", "turn"), ("turn", "tilt")])
+def test_a_joint_follows_one_that_follows_another(tmp_path: Path, order: tuple[str, ...]) -> None:
+    """Whichever relation is given first; the limits of the last are those of the first too."""
+    path = tmp_path / "four.toml"
+    more = TABLE.replace('"turn"', '"lead"').replace("[-3, 3]", "[-2.5, 3]").split("[[joints]]")[1]
+    path.write_text(f"{TABLE}[[joints]]{more}")
+    relations = {"turn": "lead*-1+0.1", "tilt": "turn*0.5"}
+    couple = {joint: relations[joint] for joint in order}
+    related = read(Request(path, couple=couple))
+    assert [joint.name for joint in related.dh.joints] == ["reach", "lead"]
+    limits = related.dh.joints[1].limits  # -1 <= tilt <= 2, so -2 <= turn <= 3
+    np.testing.assert_allclose([limits.lower, limits.upper], [-2.5, 2.1], atol=1e-15)
+    turn = -0.3 + 0.1
+    np.testing.assert_allclose(
+        oracle_for(related).forward(np.array([[0.2, 0.3]])),
+        oracle_for(read(Request(path))).forward(np.array([[turn, 0.5 * turn, 0.2, 0.3]])),
+        atol=1e-15,
+    )
+
+
 def test_the_source_keeps_to_the_followers_limits(table: Path) -> None:
     limits = read(Request(table, couple={"tilt": "turn*0.5"})).dh.joints[0].limits
     assert (limits.lower, limits.upper) == (-2.0, 3.0)

@@ -18,7 +18,13 @@ from ikgen.model.chain import PRISMATIC, ActuatedJoint, Chain, ChainAxis
 from ikgen.model.joint_relation import Mimic
 from ikgen.model.joint_tree import JointTree, Limits
 
-__all__ = ["equal_shares", "equal_stages", "related_tree", "shared_limits"]
+__all__ = [
+    "equal_shares",
+    "equal_stages",
+    "farthest_first",
+    "related_tree",
+    "shared_limits",
+]
 
 _SAME = 1e-9
 """Relative difference of the travels of two telescope stages that are equal."""
@@ -37,7 +43,7 @@ def related_tree(tree: JointTree, relations: Mapping[str, Mimic]) -> JointTree:
     root = parse_xml(source.text, shown_file(source))
     elements: dict[str, Any] = {e.get("name") or "": e for e in children(root, "joint")}
     limits = {j.name: j.limits for j in tree.joints if j.type.moves_on_one_axis}
-    for joint in sorted(relations, key=lambda name: -_steps(relations, name)):
+    for joint in farthest_first(relations):
         relation = relations[joint]
         for name in (joint, relation.joint):
             if name not in limits:
@@ -55,12 +61,23 @@ def related_tree(tree: JointTree, relations: Mapping[str, Mimic]) -> JointTree:
     return replace(made, source=replace(made.source, sha256=source.sha256))
 
 
-def _steps(relations: Mapping[str, Mimic], joint: str) -> int:
-    """How many relations lead from a joint to what drives it: of more, the earlier its limits count."""
-    steps = 0
-    while joint in relations and steps < len(relations):
-        joint, steps = relations[joint].joint, steps + 1
-    return steps
+def farthest_first(relations: Mapping[str, Mimic]) -> list[str]:
+    """The joints that follow others, those before that are driven through others: their limits count for
+    these too. Raises `UsageError` where joints follow each other in a circle."""
+
+    def steps(joint: str) -> int:
+        passed: list[str] = []
+        while joint in relations:
+            if joint in passed:
+                raise UsageError(
+                    f"--couple {joint}={relations[joint].words}: joint '{joint}' follows itself",
+                    hint="name another joint that it follows",
+                )
+            passed.append(joint)
+            joint = relations[joint].joint
+        return len(passed)
+
+    return sorted(relations, key=steps, reverse=True)
 
 
 def _limit(element: Any, limits: Limits) -> None:

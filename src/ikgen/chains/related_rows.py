@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from ikgen.chains.related_joints import shared_limits
+from ikgen.chains.related_joints import farthest_first, shared_limits
 from ikgen.errors import UnknownNameError, UsageError
 from ikgen.kinematics.rows import drive_row
 from ikgen.model.dh import DHChain
@@ -20,8 +20,8 @@ def related_dh(dh: DHChain, relations: Mapping[str, Mimic]) -> DHChain:
     Raises `UnknownNameError` for a joint that is not there, `UsageError` for one that is held, that follows
     itself, or whose source cannot move it inside the limits.
     """
-    for joint, relation in relations.items():
-        dh = _related(dh, joint, relation)
+    for joint in farthest_first(relations):
+        dh = _related(dh, joint, relations[joint])
     return dh
 
 
@@ -30,13 +30,10 @@ def _related(dh: DHChain, name: str, relation: Mimic) -> DHChain:
     for one in (name, relation.joint):
         if one not in names:
             raise UnknownNameError("joint", one, names)
-    if name == relation.joint or name in dh.free:
-        why = "is held" if name in dh.free else "follows itself"
+    if name in dh.free:
         raise UsageError(
-            f"--couple {name}={relation.words}: joint '{name}' {why}",
-            hint="leave out --free for it"
-            if name in dh.free
-            else "name another joint that it follows",
+            f"--couple {name}={relation.words}: joint '{name}' is held",
+            hint="leave out --free for it",
         )
     follower, source = names.index(name), names.index(relation.joint)
     kept = [joint for joint in dh.joints if joint.name != name]
