@@ -48,6 +48,8 @@ _REGULAR = 1e-3
 _BLURRED = 1.5e-2  # rad; roots that move further are not worth a resultant
 _ALIKE = 0.4  # digits lost on average, which rounding moves by less than a tenth
 _AS_OFTEN = 0.2  # of poses: more than rounding decides
+_NEARLY_ALL = 0.98  # of the solutions: runs that agree make up for the rest
+_HIGH = 40  # degree from which on they do not
 _KEPT = 2
 _SPECIAL_PROBES = 3
 
@@ -115,8 +117,8 @@ class EliminationPlan:
     @property
     def usable(self) -> bool:
         """Whether the arm has a finite number of solutions and the plan finds nearly all of
-        them."""
-        return self.recall > 0.98
+        them; where its polynomial is of a high degree all."""
+        return self.recall == 1.0 or (self.recall > _NEARLY_ALL and self.degree <= _HIGH)
 
 
 def eliminations(turning: Turning, *, both: bool = False) -> tuple[Elimination, ...]:

@@ -83,4 +83,4 @@ def test_there_is_a_row_for_each_header_of_roots() -> None:
     assert {path.stem for path in paths} == {
         one.name for one in ROUTINES.values() if one.finds_roots
     }
-    assert len(ROUTINES) == 10 and all(one.takes and one.gives for one in ROUTINES.values())
+    assert ROUTINES and all(one.takes and one.gives for one in ROUTINES.values())
