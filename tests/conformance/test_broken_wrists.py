@@ -68,6 +68,21 @@ BESIDE_A_FOLD = (  # the wrist's continuum crosses the curve along which the elb
     ("-6.9e-05 5.6e-05 0", "-1.5708 0 0"),
 )
 
+BESIDE_ANOTHER = (  # the wrist's continuum nearly meets another curve where the elbow is folded back
+    ("0 0 0.123", "0 0 0"),
+    ("0 0 0", "1.5708 -0.1359 -3.1416"),
+    ("0.28503 0 0", "0 0 -1.7939"),
+    ("-0.021984 -0.25075 0", "1.5708 0 0"),
+    ("0 0 0", "-1.5708 0 0"),
+    ("0 -0.091 0", "1.5708 0 0"),
+)
+TURNING = np.array(
+    [
+        [-1.92842000382, 2.56249035140, -2.967, 0.01983831137, 4.62646801e-8, -1.00812626948],
+        [-2.55583323880, 1.45168803208, -2.967, 0.09858965117, 5.52235299e-9, -0.95762846113],
+    ]
+)  # fmt: skip
+
 AT_THE_CROSSING = (  # axes 4 to 6 of the arm miss each other by 0.07 mm, and the wrist's are tilted by 8e-6
     ("0.0272776 0.106003 0.235236", "0.423202 0 -0.261799"),
     ("0.0500248 0.123987 1.31115e-05", "-0.129894 -0.000368173 -0.000368543"),
@@ -112,6 +127,14 @@ def test_curves_that_cross_beside_a_fold_are_found(tmp_path: Path) -> None:
     path = serial_urdf(tmp_path / "wrist.urdf", BESIDE_A_FOLD, tip=tool, limit=3.2)
     folded_back = np.pi / 4 * np.array([[0.0, -3.0, -3.0, 3.0, 4.0, -4.0]])
     assert gaps(path, folded_back, tmp_path).max() < 1e-5
+
+
+def test_solutions_beside_a_curve_that_comes_near_are_found(tmp_path: Path) -> None:
+    """Between two samples the direction that is left turns round there."""
+    tool = ("0 0 0.1358", "0 -1.57 0")
+    path = serial_urdf(tmp_path / "wrist.urdf", BESIDE_ANOTHER, tip=tool, limit=3.1)
+    arm, header = emitted_in_both(Request(path, name="wrist"), tmp_path)
+    assert gaps_in_both(arm, header, TURNING).max() < 1e-3
 
 
 def test_solutions_where_curves_cross_are_found(tmp_path: Path) -> None:

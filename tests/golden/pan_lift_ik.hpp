@@ -1772,11 +1772,11 @@ template <class Arm> struct CurveParts : CurveSamples<Arm> {
     }
   }
 
-  void look_between(const double* from, const double* to) noexcept {
+  void look_between(const double* from, const double* to, int parts = 4) noexcept {
     Sample a = Curve::at(from);
-    for (int i = 1; i <= kParts; ++i) {
+    for (int i = 1; i <= parts; ++i) {
       double q[Arm::kDof];
-      for (int j = 0; j < Arm::kDof; ++j) q[j] = from[j] + i * (SolutionRows<Arm>::change(j, from, to) / kParts);
+      for (int j = 0; j < Arm::kDof; ++j) q[j] = from[j] + i * (SolutionRows<Arm>::change(j, from, to) / parts);
       const Sample b = Curve::at(q, a);
       if (is_solution(b)) keep(b);
       look(a, b);
@@ -1798,7 +1798,6 @@ template <class Arm> struct CurveParts : CurveSamples<Arm> {
  private:
   static constexpr int kDeep = 24, kDoubts = 3;  // how often a part is cut, and how often as the cubic bends by so much
   static constexpr double kBent = 1.5, kStraight = 0.03;  // of what it is in the middle, and at most
-  static constexpr int kParts = 4;
   static constexpr int kSteps = 40;  // of false position; the product of what is left at both ends has to halve in kSoon
   static constexpr int kCubics = 4, kNewton = 8, kSoon = 4;  // first steps that go to roots of cubics, by Newton's method
   static constexpr double kRoundOff = 1e-15;
@@ -1914,6 +1913,8 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
     if (kind == Kind::Whole || lost) return kind;
     const int noted = crossings, own = passing;
     crossings = kCrossings;  // those of the others do not count
+    for (int i = 0; i < noted && kind == Kind::Broken; ++i)
+      Curve::look_between(crossing[i].from.q, crossing[i].to.q, kFine);
     for (int i = 0; i < noted; ++i) follow_other(crossing[i], passed);
     passing = own;
     met = count;
@@ -1938,6 +1939,7 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
   };
   static constexpr int kCrossings = 4;
   static constexpr int kHalves = 4;
+  static constexpr int kFine = 8;  // parts of one in which what is left turns
   static constexpr double kAside = 0.4;  // rad or m: so far from a crossing curves are apart
   Crossing crossing[kCrossings];
   int crossings = 0;

@@ -1413,17 +1413,19 @@ def _look(arm: _Arm, parts: _Parts, T: Array, samples: _Index) -> tuple[_Index, 
     return _kept(arm, _joined(*kept, _closed_in(arm, _joined(*brackets), T)))
 
 
-def _look_between(arm: _Arm, q: Array, to: Array, T: Array) -> tuple[_Index, Array]:
+def _look_between(
+    arm: _Arm, q: Array, to: Array, T: Array, count: int = _PARTS
+) -> tuple[_Index, Array]:
     """The solutions (n, dof) on curves from rows q (k, dof) to others (k, dof), towards aims T (k, ...),
-    whatever cubics through both tell."""
+    whatever cubics through both tell, in so many parts."""
     with np.errstate(all="ignore"):
         way, a, parts = _differences(arm, q, to), _samples_beside(arm, q, T), []
-        for part in range(_PARTS):
-            b = _sampled(arm, a._replace(q=q + (part + 1) / _PARTS * way), T)[0]
+        for part in range(count):
+            b = _sampled(arm, a._replace(q=q + (part + 1) / count * way), T)[0]
             width = np.ones(len(q))
             parts.append(_Parts(a, b, np.arange(len(q)), part * width, width))
             a = b
-        return _look(arm, _joined(*parts), T, np.full(len(q), _PARTS))
+        return _look(arm, _joined(*parts), T, np.full(len(q), count))
 
 
 def _between(arm: _Arm, parts: _Parts, share: Array, T: Array) -> _Reduced:
@@ -1950,17 +1952,20 @@ _ASIDE = 0.4  # rad or m: so far from a crossing curves are apart
 
 class _Crossings(NamedTuple):
     """Places where others cross the curves of `owner` (n,): rows `near` (n, 2, dof) to both sides on the
-    curve, and one `beside` (n, dof), by a way along the second direction that hardly moves the pose."""
+    curve, the samples' of the `part` (n, 2, dof), and one `beside` (n, dof), by a way along the second
+    direction that hardly moves the pose."""
 
     owner: _Index
     near: Array
+    part: Array
     beside: Array
 
 
 def _crossings_of(arm: _Arm, parts: _Parts, T: Array) -> _Crossings:
     """Where others cross the curves of some parts."""
     owner, a, b = parts.owner, parts.a, parts.b
-    none = _Crossings(owner[:0], np.stack([a.q, a.q], axis=1)[:0], a.q[:0])
+    pairs = np.stack([a.q, a.q], axis=1)[:0]
+    none = _Crossings(owner[:0], pairs, pairs, a.q[:0])
     if not len(owner) or a.out.shape != a.still.shape:
         return none
     sense = _keeps(arm, a, T[owner])
@@ -1982,7 +1987,8 @@ def _crossings_of(arm: _Arm, parts: _Parts, T: Array) -> _Crossings:
     along, _ = _unit((parts.b.q - parts.a.q)[:, list(arm.moving)])  # the still direction turns there
     other = np.linalg.svd(_others(arm, at._replace(still=along), aim))[2][:, -2]
     step = _ASIDE / np.abs(other).max(axis=1)[:, None] * other
-    return _Crossings(parts.owner, ends.q.swapaxes(0, 1), _moved_rows(arm, at.q, step))
+    part = np.stack([parts.a.q, parts.b.q], axis=1)
+    return _Crossings(parts.owner, ends.q.swapaxes(0, 1), part, _moved_rows(arm, at.q, step))
 
 
 def _keeps(arm: _Arm, at: _Reduced, T: Array) -> _Flags:
@@ -2191,6 +2197,7 @@ def _way(arm: _Arm, at: _Reduced, q: Array) -> tuple[Array, Array, Array]:
 _LEAST = 4
 
 _OVER = 0.05  # of a part
+_FINE = 8  # parts of one in which what is left turns
 
 
 class _Traced(NamedTuple):
@@ -2243,6 +2250,12 @@ def _traced(arm: _Arm, q: Array, T: Array) -> tuple[_Index, _Flags, _Flags, _Ind
     crossings = _crossings_of(arm, crossed, T)
     parts: _Parts = _joined(here, last, _crossing_parts(arm, crossed, crossings, T))
     owner, found = _look(arm, parts, T, steps)
+    # where curves only come near each other, what is left turns to the other sense within a part
+    near = np.flatnonzero(broken[crossings.owner])
+    begin, end = crossings.part[near].swapaxes(0, 1)
+    k, between_them = _look_between(arm, begin, end, T[crossings.owner[near]], _FINE)
+    owner = np.concatenate([owner, crossings.owner[near[k]]])
+    found = np.concatenate([found, between_them])
     # beside a crossing samples go astray to the other curve: steps begin there, wherever those led
     owner = np.concatenate([owner, np.repeat(crossings.owner, 2)])
     found = np.concatenate([found, crossings.near.reshape(-1, q.shape[1])])
@@ -2261,7 +2274,7 @@ def _kinds(arm: _Arm, curves: _Walked) -> tuple[_Index, _Flags]:
 
 def _crossing_parts(arm: _Arm, parts: _Parts, crossings: _Crossings, T: Array) -> _Parts:
     """The parts of broken curves that cross curves of some parts."""
-    owner, _, q = crossings
+    owner, q = crossings.owner, crossings.beside
     none: _Parts = _some_of(parts, owner[:0])
     if not len(owner):
         return none

@@ -62,6 +62,9 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
     if (kind == Kind::Whole || lost) return kind;
     const int noted = crossings, own = passing;
     crossings = kCrossings;  // those of the others do not count
+    // where curves only come near each other, what is left turns to the other sense within a part
+    for (int i = 0; i < noted && kind == Kind::Broken; ++i)
+      Curve::look_between(crossing[i].from.q, crossing[i].to.q, kFine);
     for (int i = 0; i < noted; ++i) follow_other(crossing[i], passed);
     passing = own;
     met = count;
@@ -89,6 +92,7 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
   };
   static constexpr int kCrossings = 4;
   static constexpr int kHalves = 4;
+  static constexpr int kFine = 8;  // parts of one in which what is left turns
   static constexpr double kAside = 0.4;  // rad or m: so far from a crossing curves are apart
   Crossing crossing[kCrossings];
   int crossings = 0;

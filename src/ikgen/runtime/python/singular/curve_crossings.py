@@ -24,10 +24,12 @@ _ASIDE = 0.4  # rad or m: so far from a crossing curves are apart
 
 class Crossings(NamedTuple):
     """Places where others cross the curves of `owner` (n,): rows `near` (n, 2, dof) to both sides on the
-    curve, and one `beside` (n, dof), by a way along the second direction that hardly moves the pose."""
+    curve, the samples' of the `part` (n, 2, dof), and one `beside` (n, dof), by a way along the second
+    direction that hardly moves the pose."""
 
     owner: Index
     near: Array
+    part: Array
     beside: Array
 
 
@@ -37,7 +39,8 @@ def crossings_of(arm: Arm, parts: Parts, T: Array) -> Crossings:
     Where that one is passed, the sense turns round in which the others with the still one for what is left
     move the pose; of arms with fewer joints than equations nothing tells."""
     owner, a, b = parts.owner, parts.a, parts.b
-    none = Crossings(owner[:0], np.stack([a.q, a.q], axis=1)[:0], a.q[:0])
+    pairs = np.stack([a.q, a.q], axis=1)[:0]
+    none = Crossings(owner[:0], pairs, pairs, a.q[:0])
     if not len(owner) or a.out.shape != a.still.shape:
         return none
     sense = _keeps(arm, a, T[owner])
@@ -59,7 +62,8 @@ def crossings_of(arm: Arm, parts: Parts, T: Array) -> Crossings:
     along, _ = unit((parts.b.q - parts.a.q)[:, list(arm.moving)])  # the still direction turns there
     other = np.linalg.svd(_others(arm, at._replace(still=along), aim))[2][:, -2]
     step = _ASIDE / np.abs(other).max(axis=1)[:, None] * other
-    return Crossings(parts.owner, ends.q.swapaxes(0, 1), moved_rows(arm, at.q, step))
+    part = np.stack([parts.a.q, parts.b.q], axis=1)
+    return Crossings(parts.owner, ends.q.swapaxes(0, 1), part, moved_rows(arm, at.q, step))
 
 
 def _keeps(arm: Arm, at: Reduced, T: Array) -> Flags:

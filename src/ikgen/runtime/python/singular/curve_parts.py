@@ -80,17 +80,19 @@ def look(arm: Arm, parts: Parts, T: Array, samples: Index) -> tuple[Index, Array
     return _kept(arm, joined(*kept, _closed_in(arm, joined(*brackets), T)))
 
 
-def look_between(arm: Arm, q: Array, to: Array, T: Array) -> tuple[Index, Array]:
+def look_between(
+    arm: Arm, q: Array, to: Array, T: Array, count: int = _PARTS
+) -> tuple[Index, Array]:
     """The solutions (n, dof) on curves from rows q (k, dof) to others (k, dof), towards aims T (k, ...),
-    whatever cubics through both tell; whose they are (n,)."""
+    whatever cubics through both tell, in so many parts; whose they are (n,)."""
     with np.errstate(all="ignore"):
         way, a, parts = differences(arm, q, to), samples_beside(arm, q, T), []
-        for part in range(_PARTS):
-            b = sampled(arm, a._replace(q=q + (part + 1) / _PARTS * way), T)[0]
+        for part in range(count):
+            b = sampled(arm, a._replace(q=q + (part + 1) / count * way), T)[0]
             width = np.ones(len(q))
             parts.append(Parts(a, b, np.arange(len(q)), part * width, width))
             a = b
-        return look(arm, joined(*parts), T, np.full(len(q), _PARTS))
+        return look(arm, joined(*parts), T, np.full(len(q), count))
 
 
 def between(arm: Arm, parts: Parts, share: Array, T: Array) -> Reduced:

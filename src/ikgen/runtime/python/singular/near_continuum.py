@@ -18,7 +18,7 @@ from ikgen.runtime.python.newton.refinement import least_singular
 from ikgen.runtime.python.rows.row_links import differences
 from ikgen.runtime.python.rows.solution_rows import places
 from ikgen.runtime.python.singular.curve_crossings import Crossings, crossings_of
-from ikgen.runtime.python.singular.curve_parts import Parts, between, look
+from ikgen.runtime.python.singular.curve_parts import Parts, between, look, look_between
 from ikgen.runtime.python.singular.curve_samples import samples_beside
 from ikgen.runtime.python.singular.curve_walks import BESIDE, Walked, reached, walked
 
@@ -27,6 +27,7 @@ __all__ = ["LEAST", "Traced", "followed", "on_curves", "rows_around", "trace"]
 LEAST = 4
 """Samples of what is a curve."""
 _OVER = 0.05  # of a part
+_FINE = 8  # parts of one in which what is left turns
 
 
 class Traced(NamedTuple):
@@ -83,6 +84,12 @@ def _traced(arm: Arm, q: Array, T: Array) -> tuple[Index, Flags, Flags, Index, A
     crossings = crossings_of(arm, crossed, T)
     parts: Parts = joined(here, last, _crossing_parts(arm, crossed, crossings, T))
     owner, found = look(arm, parts, T, steps)
+    # where curves only come near each other, what is left turns to the other sense within a part
+    near = np.flatnonzero(broken[crossings.owner])
+    begin, end = crossings.part[near].swapaxes(0, 1)
+    k, between_them = look_between(arm, begin, end, T[crossings.owner[near]], _FINE)
+    owner = np.concatenate([owner, crossings.owner[near[k]]])
+    found = np.concatenate([found, between_them])
     # beside a crossing samples go astray to the other curve: steps begin there, wherever those led
     owner = np.concatenate([owner, np.repeat(crossings.owner, 2)])
     found = np.concatenate([found, crossings.near.reshape(-1, q.shape[1])])
@@ -101,7 +108,7 @@ def _kinds(arm: Arm, curves: Walked) -> tuple[Index, Flags]:
 
 def _crossing_parts(arm: Arm, parts: Parts, crossings: Crossings, T: Array) -> Parts:
     """The parts of broken curves that cross curves of some parts."""
-    owner, _, q = crossings
+    owner, q = crossings.owner, crossings.beside
     none: Parts = some_of(parts, owner[:0])
     if not len(owner):
         return none
