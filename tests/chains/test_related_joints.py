@@ -110,7 +110,21 @@ def test_what_is_told_of_one_stage_leaves_the_others_their_shares(tmp_path: Path
     assert equal_shares(chain, ("stage_2",), ("stage_3",)) == {}
     reading = read(Request(path, couple={"stage_3": "stage_2*0.5+0.02"}))
     assert [joint.name for joint in reading.dh.joints] == ["lift", "stage_1", "yaw", "pitch"]
-    assert reading.coupled == ("stage_2=stage_1*1.0+0.01", "stage_4=stage_1*1.0+0.03")
+    assert reading.coupled == ("stage_2=stage_1*1+0.01", "stage_4=stage_1*1+0.03")
+    assert reading.relations == ("stage_3=stage_2*0.5+0.02", *reading.coupled)
+
+
+def test_what_is_told_of_the_first_stage_makes_another_the_first(tmp_path: Path) -> None:
+    path = telescope_robot(tmp_path)
+    reading = read(Request(path, couple={"stage_1": "stage_3*2-0.04"}))
+    assert [joint.name for joint in reading.dh.joints] == ["lift", "stage_2", "yaw", "pitch"]
+    assert len(reading.coupled) == 2
+    held = read(Request(path, free=dict.fromkeys(STAGES)))
+    q = np.array([0.3, 0.04, 0.2, -0.1])  # stage_3 and stage_4 are 0.01 and 0.02 farther
+    full = np.array([0.3, 2 * 0.05 - 0.04, 0.04, 0.05, 0.06, 0.2, -0.1])
+    np.testing.assert_allclose(
+        oracle_for(reading).forward(q[None]), oracle_for(held).forward(full[None]), atol=1e-15
+    )
 
 
 def test_limits_go_through_relations_in_any_order(tmp_path: Path) -> None:

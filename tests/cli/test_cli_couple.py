@@ -44,7 +44,7 @@ def test_a_telescope_takes_equal_shares_unasked(
     robot = telescope_robot(tmp_path)
     out = ["-o", str(tmp_path), "--task", "position"]
     assert run(["from-urdf", str(robot), *out, "--samples", "40"]) == 0
-    assert "take equal shares: --couple stage_2=stage_1*1.0+0.01" in capsys.readouterr().err
+    assert "take equal shares: --couple stage_2=stage_1*1+0.01" in capsys.readouterr().err
     module = PythonModule(tmp_path / "telescope_ik.py").module
     assert module.JOINT_NAMES == ("lift", "stage_1", "yaw", "pitch")
     np.testing.assert_allclose(module.UPPER[:2], [1.1, 0.13])

@@ -105,7 +105,11 @@ def test_no_search_is_proposed_where_other_values_change_nothing(
     ("relations", "words"),
     [
         (RELATIONS, "stage_2=stage_1*1+0.01; stage_3=stage_1*1+0.02; stage_4=stage_1*0.5+0.03"),
-        ({}, "stage_2=stage_1*1.0+0.01; stage_3=stage_1*1.0+0.02; stage_4=stage_1*1.0+0.03"),
+        (
+            {"stage_3": "stage_1*0.5+0.02"},
+            "stage_3=stage_1*0.5+0.02; stage_2=stage_1*1+0.01; stage_4=stage_1*1+0.03",
+        ),
+        ({}, "stage_2=stage_1*1+0.01; stage_3=stage_1*1+0.02; stage_4=stage_1*1+0.03"),
     ],
 )
 def test_joints_that_follow_others_are_named(
@@ -115,7 +119,7 @@ def test_joints_that_follow_others_are_named(
     command += [f"--couple={joint}={text}" for joint, text in relations.items()]
     assert run([*command, "--no-verify", "-o", str(tmp_path)]) == 0
     (line,) = (x for x in capsys.readouterr().out.splitlines() if x.startswith("coupled:"))
-    chosen = "" if relations else " (equal stages of a telescope)"
+    chosen = "" if relations == RELATIONS else " (equal stages of a telescope)"
     assert line.removeprefix("coupled:").strip() == words + chosen
     assert run([*command, "--no-verify", "-o", str(tmp_path), "--json"]) == 0
     assert "; ".join(json.loads(capsys.readouterr().out)["coupled"]) == words

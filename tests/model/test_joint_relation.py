@@ -54,7 +54,7 @@ def test_one_other_joint_is_followed_and_all_else_is_of_motors() -> None:
 
 @pytest.mark.parametrize(
     ("multiplier", "offset", "words"),
-    [(1.0, 0.0, "a"), (1.0, 0.5, "a*1.0+0.5"), (-1.0, 0.0, "a*-1.0"), (0.1, -0.0, "a*0.1")],
+    [(1.0, 0.0, "a"), (1.0, 0.5, "a*1+0.5"), (-1.0, 0.0, "a*-1"), (0.1, -0.0, "a*0.1")],
 )
 def test_what_a_joint_follows_is_written_as_it_is_read(
     multiplier: float, offset: float, words: str

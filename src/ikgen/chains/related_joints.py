@@ -107,34 +107,33 @@ def shared_limits(relation: Mimic, joint: str, own: Limits, of_source: Limits) -
 
 
 def equal_shares(chain: Chain, held: Collection[str], told: Collection[str]) -> dict[str, Mimic]:
-    """The stages of telescopes that nothing else is told of, and what they follow; none where a stage is
-    held."""
-    found = equal_stages(chain)
+    """The stages of telescopes but those that something else is told of, and what they follow; none where a
+    stage is held."""
+    found = equal_stages(chain, told)
     named = {*found, *(stage.joint for stage in found.values())}
-    if not named.isdisjoint(held):
-        return {}
-    return {joint: stage for joint, stage in found.items() if joint not in told}
+    return found if named.isdisjoint(held) else {}
 
 
-def equal_stages(chain: Chain) -> dict[str, Mimic]:
+def equal_stages(chain: Chain, told: Collection[str] = ()) -> dict[str, Mimic]:
     """Joints of a telescope, each with the same share as its first stage: neighbours that slide in one
-    direction, or in the opposite one with the opposite sign, with the same travel. By joint; empty where
-    the chain has none."""
+    direction, or in the opposite one with the opposite sign, with the same travel, beside those that are
+    `told` something else. By joint; empty where the chain has none."""
     found: dict[str, Mimic] = {}
     first: ChainAxis | None = None
     T = np.eye(3)  # from the axes of the last joint to those of the first stage
     for axis in chain.axes:
         joint = chain.joints[axis.driver]
+        T = T @ axis.T_prev_axis[:3, :3]
         slides = axis.kind == PRISMATIC and joint.name == axis.name
-        if slides and first is not None:
+        sign = _sense(first.axis, T @ axis.axis) if slides and first is not None else 0.0
+        if sign and joint.name in told:
+            continue
+        if sign and first is not None and _same_travel(chain.joints[first.driver], joint):
             lead = chain.joints[first.driver]
-            T = T @ axis.T_prev_axis[:3, :3]
-            sign = _sense(first.axis, T @ axis.axis)
-            if sign and _same_travel(lead, joint):
-                begin = joint.limits.lower if sign > 0 else joint.limits.upper
-                found[joint.name] = Mimic(lead.name, sign, begin - sign * lead.limits.lower)
-                continue
-        first, T = axis if slides else None, np.eye(3)
+            begin = joint.limits.lower if sign > 0 else joint.limits.upper
+            found[joint.name] = Mimic(lead.name, sign, begin - sign * lead.limits.lower)
+            continue
+        first, T = axis if slides and joint.name not in told else None, np.eye(3)
     return found
 
 

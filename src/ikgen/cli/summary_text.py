@@ -53,8 +53,10 @@ def _robot(derivation: Derivation) -> str:
 def _coupled(derivation: Derivation) -> list[tuple[str, str]]:
     """A line on the joints that follow others beyond what the file says, and how."""
     reading = derivation.reading
-    why = " (equal stages of a telescope)" if reading.coupled else ""
-    return [("coupled", "; ".join(reading.relations) + why)] if reading.relations else []
+    asked = [one for one in reading.relations if one not in reading.coupled]
+    chosen = [f"{one} (equal stages of a telescope)" for one in reading.coupled[-1:]]
+    words = "; ".join([*asked, *reading.coupled[:-1], *chosen])
+    return [("coupled", words)] if words else []
 
 
 def _motors(dh: DHChain) -> list[tuple[str, str]]:

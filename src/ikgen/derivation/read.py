@@ -57,7 +57,7 @@ def _with_relations(reading: Reading, request: Request) -> Reading:
 
     asked = (f"{joint}={x}" for joint, x in request.couple.items() if joint not in request.motors)
     behind = tuple(parts(request.sums).keys() - request.sums.keys())
-    return replace(reading, relations=tuple(asked), parts=behind)
+    return replace(reading, relations=(*asked, *reading.coupled), parts=behind)
 
 
 def _with_motors(reading: Reading, request: Request) -> Reading:

@@ -30,7 +30,8 @@ class Mimic:
     @property
     def words(self) -> str:
         """As `read_relation` reads it, no more than that needs."""
-        factor = "" if self.multiplier == 1.0 and not self.offset else f"*{self.multiplier!r}"
+        number = repr(self.multiplier).removesuffix(".0")
+        factor = "" if self.multiplier == 1.0 and not self.offset else f"*{number}"
         return f"{self.joint}{factor}" + (f"{self.offset:+}" if self.offset else "")
 
 
