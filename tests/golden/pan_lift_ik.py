@@ -2818,7 +2818,8 @@ def _held_values(
             raise ValueError(f"free has shape {given.shape}, expected ({len(names)},)")
         values = tuple(given.reshape(-1).tolist())
     if len(values) != len(names):
-        raise ValueError(f"free has {len(values)} values, expected {len(names)}")
+        many = "value" if len(values) == 1 else "values"
+        raise ValueError(f"free has {len(values)} {many}, expected {len(names)}")
     if not all(map(isfinite, values)):
         raise ValueError(f"free {list(values)} has values that are not finite")
     return values

@@ -175,6 +175,7 @@ def test_what_is_no_calibration_is_refused(text: str, said: str, tmp_path: Path)
         ("[[joints]\n", "not TOML"),
         ("\ufeff[[joints]]\nb = 1\n[[joints]]\n", "unknown entry 'b'"),
         ("convention = 'craig'\n[[joints]]\n[[joints]]\n", "convention is 'craig'"),
+        ("convention = 'standard'\n[[joints]]\n[[joints]]\n", "not read from a table of such"),
     ],
 )
 def test_what_are_no_offsets_is_refused(text: str, said: str, tmp_path: Path) -> None:

@@ -82,6 +82,9 @@ def test_a_package_that_was_moved_is_told_where_its_description_is(
             f"hint: ikgen build {other.as_posix()} --robot FILE (the description, where it is now)"
         )
         assert hint in capsys.readouterr().err
+    assert run([*command, "--check", "--robot", "scara_standard.toml"]) == 1
+    hint = f"hint: ikgen build {other.as_posix()} --robot scara_standard.toml\n"
+    assert hint in capsys.readouterr().err
     assert run([*command, "--robot", "scara_standard.toml"]) == 0
     assert '"robot": "../../../scara_standard.toml"' in (other / "scara_ik.json").read_text()
     assert run([*command, "--check"]) == 0

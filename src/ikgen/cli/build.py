@@ -17,6 +17,7 @@ from ikgen.cli.options import console_options, executor_option, trust_option
 from ikgen.cli.parameter_types import GivenPath, RobotFile
 from ikgen.cli.work_text import work_text
 from ikgen.model.counted import counted
+from ikgen.projects.check import mending
 from ikgen.projects.config import ArmConfig, named_config
 from ikgen.projects.recorded_arms import has_lost_robot, listed_arms
 
@@ -84,7 +85,8 @@ def build(
     path = named_config(config)
     arms = listed_arms(path, robot)
     if check:
-        return _check(path, arms, verify=not no_verify, as_json=as_json, quiet=quiet)
+        way_out = mending(path, arms, robot)
+        return _check(arms, way_out, verify=not no_verify, as_json=as_json, quiet=quiet)
     from ikgen.processes.executors import Workers
     from ikgen.projects.left_outputs import left_outputs
     from ikgen.projects.project_build import build_arms
@@ -114,17 +116,15 @@ def build(
 
 def _with_way(path: Path, arm: ArmConfig, outcome: Outcome) -> Outcome:
     """The outcome, with what to type where the description is gone of outputs in a folder."""
-    from ikgen.projects.check import mending
-
     lost = outcome.exit_code and has_lost_robot(path, arm)
     return replace(outcome, hint=mending(path, [arm])) if lost else outcome
 
 
 def _check(
-    path: Path, arms: Sequence[ArmConfig], *, verify: bool, as_json: bool, quiet: bool
+    arms: Sequence[ArmConfig], way_out: str, *, verify: bool, as_json: bool, quiet: bool
 ) -> int:
-    """Say what is stale; writes nothing and imports nothing heavy."""
-    from ikgen.projects.check import mending, stale_lines
+    """Say what is stale, and the way out; writes nothing and imports nothing heavy."""
+    from ikgen.projects.check import stale_lines
     from ikgen.projects.stale import stale_reasons
 
     reasons = stale_reasons(arms, verify=verify)
@@ -140,12 +140,12 @@ def _check(
             for arm, reason in zip(arms, reasons, strict=True)
         ]
         result: dict[str, Any] = {"stale": bool(code), "arms": rows}
-        _echo(result, code, f"{counted(sum(map(bool, reasons)), 'arm')} stale", mending(path, arms))
+        _echo(result, code, f"{counted(sum(map(bool, reasons)), 'arm')} stale", way_out)
     elif not quiet:
         names = [arm.name for arm in arms]
         click.echo("\n".join(stale_lines(list(zip(names, reasons, strict=True)))))
     if code and not quiet:
-        click.echo(f"hint: {mending(path, arms)}", err=True)
+        click.echo(f"hint: {way_out}", err=True)
     return code
 
 

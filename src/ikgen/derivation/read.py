@@ -51,8 +51,6 @@ def _check_held_once(request: Request) -> None:
 
 def _with_relations(reading: Reading, request: Request) -> Reading:
     """With the relations between joints, and the names of joints that those of several sources need."""
-    if not request.couple:
-        return replace(reading, relations=reading.coupled)
     from ikgen.chains.several_sources import parts
 
     asked = (f"{joint}={x}" for joint, x in request.couple.items() if joint not in request.motors)
@@ -200,7 +198,8 @@ def _with_offsets(reading: Reading, request: Request) -> Reading:
             f"--calibration {path}: a DH table takes offsets of its rows",
             hint="write [[joints]] with alpha, a, d, theta in a .toml file",
         )
-    dh = offset_dh(reading.dh, row_offsets(path, len(reading.dh.rows)))
+    table = reading.source.text if request.table else ""
+    dh = offset_dh(reading.dh, row_offsets(path, len(reading.dh.rows), table))
     return _told(Reading(calibrated_source(reading.source, path), None, None, dh), path, reading.dh)
 
 

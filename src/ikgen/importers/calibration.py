@@ -2,8 +2,8 @@
 
 Two forms. YAML as `ur_description` reads it (`kinematics: shoulder: {x, y, z, roll, pitch, yaw}`, lengths
 in m and angles in rad): the origins of joints, by the link that they carry, in place of the file's. TOML as
-DH tables are written: `[[joints]]` with `alpha`, `a`, `d`, `theta` to add to the arm's rows, which are
-modified ones unless `convention` says "standard".
+DH tables are written: `[[joints]]` with `alpha`, `a`, `d`, `theta` to add to the arm's modified rows, or
+to the standard ones of a table, where `convention` says so.
 """
 
 from __future__ import annotations
@@ -137,11 +137,14 @@ def _origins(path: Path) -> dict[str, dict[str, float]]:
     return found
 
 
-def row_offsets(path: Path, rows: int) -> tuple[dict[str, float], ...]:
+def row_offsets(path: Path, rows: int, table: str = "") -> tuple[dict[str, float], ...]:
     """What a calibration in TOML adds to each of the arm's modified rows: `ROW_ENTRIES`, in m and rad; the
-    last, to the link behind the rows, which a standard table has in its last row.
+    last, to the link behind the rows, which a standard table has in its last row. `table`: the text of the
+    DH table that the arm was read from, "" where it was none.
 
-    Raises `BadDescriptionError` for another number of rows, unknown entries, and what is no number.
+    Raises `BadDescriptionError` for another number of rows, unknown entries, what is no number, and for
+    offsets of standard rows where the arm has none: the signs of its own rows differ from those of a table
+    that somebody has of it.
     """
     text = _text(path)
     try:
@@ -149,11 +152,7 @@ def row_offsets(path: Path, rows: int) -> tuple[dict[str, float], ...]:
     except ValueError as error:
         hint = conflict_or(text, "write tables [[joints]]; calibrations in YAML end in .yaml")
         raise BadDescriptionError(f"not TOML: {error}", file=str(path), hint=hint) from None
-    convention = data.get("convention", CONVENTIONS[0])
-    if convention not in CONVENTIONS:
-        problem = f"the calibration's convention is {shown(convention)}"
-        hint = f"there is: {', '.join(CONVENTIONS)}"
-        raise BadDescriptionError(problem, file=str(path), hint=hint)
+    standard = _is_standard(data, table, path)
     joints = data.get("joints")
     if (
         set(data) - {"convention"} != {"joints"}
@@ -168,11 +167,30 @@ def row_offsets(path: Path, rows: int) -> tuple[dict[str, float], ...]:
         )
     found = [dict(_row(joint, i, path)) for i, joint in enumerate(joints, start=1)]
     nothing = dict.fromkeys(ROW_ENTRIES, 0.0)
-    before = [nothing, *found] if convention == "standard" else [*found, nothing]
+    before = [nothing, *found] if standard else [*found, nothing]
     return tuple(
         {**link, "d": own["d"], "theta": own["theta"]}
         for link, own in zip(before, [*found, nothing], strict=True)
     )
+
+
+def _is_standard(data: Mapping[str, Any], table: str, path: Path) -> bool:
+    """Whether offsets are of the standard rows of a DH table."""
+    convention = data.get("convention", CONVENTIONS[0])
+    if convention not in CONVENTIONS:
+        problem = f"the calibration's convention is {shown(convention)}"
+        hint = f"there is: {', '.join(CONVENTIONS)}"
+        raise BadDescriptionError(problem, file=str(path), hint=hint)
+    if convention == CONVENTIONS[0]:
+        return False
+    if not table or parse_toml(table).get("convention") != convention:
+        raise BadDescriptionError(
+            f"the calibration is of {convention} rows, and the arm was not read from a table of such",
+            file=str(path),
+            hint="generate from that table (ikgen from-dh), or write the offsets of the modified rows that "
+            "ikgen inspect shows",
+        )
+    return True
 
 
 def _row(joint: Any, number: int, path: Path) -> Iterator[tuple[str, float]]:

@@ -20,10 +20,13 @@ def stale_lines(reasons: Sequence[tuple[str, str]]) -> list[str]:
     return [f"{name}: {'stale: ' + reason if reason else 'up to date'}" for name, reason in reasons]
 
 
-def mending(config: Path, arms: Sequence[ArmConfig] = ()) -> str:
-    """The command that brings arms of a config, or of a folder's records, up to date."""
-    lost = any(has_lost_robot(config, arm) for arm in arms)
-    more = f" {ROBOT_NOW}" if lost else ""
+def mending(config: Path, arms: Sequence[ArmConfig] = (), robot: Path | None = None) -> str:
+    """The command that brings arms of a config, or of a folder's records, up to date; `robot`: the
+    description that was given for these."""
+    lost = robot is None and any(has_lost_robot(config, arm) for arm in arms)
+    more = (
+        f" --robot {shlex.quote(robot.as_posix())}" if robot is not None else f" {ROBOT_NOW}" * lost
+    )
     return f"ikgen build {shlex.quote(config.as_posix())}{more}"
 
 

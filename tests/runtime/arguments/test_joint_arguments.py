@@ -36,7 +36,7 @@ def test_defaults_and_seeds() -> None:
 @pytest.mark.parametrize(
     ("free", "words"),
     [
-        (0.25, "1 values, expected 2"),
+        (0.25, "1 value, expected 2"),
         ([[0.1, 0.2]], r"shape \(1, 2\), expected \(2,\)"),
         ([0.1, np.nan], "not finite"),
         ({"z": 1.0}, "no free joint named"),
