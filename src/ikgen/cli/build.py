@@ -82,11 +82,10 @@ def build(
     CONFIG is an ikgen.toml, or a pyproject.toml with [tool.ikgen]; by default the one here. Of a folder DIR
     without one those that were generated into it are made again.
     """
-    path = named_config(config)
-    arms = listed_arms(path, robot)
+    arms = listed_arms(path := named_config(config), robot)
     if check:
-        way_out = mending(path, arms, robot)
-        return _check(arms, way_out, verify=not no_verify, as_json=as_json, quiet=quiet)
+        mend = mending(path, arms, robot)
+        return _check(arms, mend, verify=not no_verify, as_json=as_json, quiet=quiet)
     from ikgen.processes.executors import Workers
     from ikgen.projects.left_outputs import left_outputs
     from ikgen.projects.project_build import build_arms
@@ -121,9 +120,9 @@ def _with_way(path: Path, arm: ArmConfig, outcome: Outcome) -> Outcome:
 
 
 def _check(
-    arms: Sequence[ArmConfig], way_out: str, *, verify: bool, as_json: bool, quiet: bool
+    arms: Sequence[ArmConfig], mend: str, *, verify: bool, as_json: bool, quiet: bool
 ) -> int:
-    """Say what is stale, and the way out; writes nothing and imports nothing heavy."""
+    """Say what is stale, and the command to `mend` it; writes nothing and imports nothing heavy."""
     from ikgen.projects.check import stale_lines
     from ikgen.projects.stale import stale_reasons
 
@@ -140,12 +139,12 @@ def _check(
             for arm, reason in zip(arms, reasons, strict=True)
         ]
         result: dict[str, Any] = {"stale": bool(code), "arms": rows}
-        _echo(result, code, f"{counted(sum(map(bool, reasons)), 'arm')} stale", way_out)
+        _echo(result, code, f"{counted(sum(map(bool, reasons)), 'arm')} stale", mend)
     elif not quiet:
         names = [arm.name for arm in arms]
         click.echo("\n".join(stale_lines(list(zip(names, reasons, strict=True)))))
     if code and not quiet:
-        click.echo(f"hint: {way_out}", err=True)
+        click.echo(f"hint: {mend}", err=True)
     return code
 
 
