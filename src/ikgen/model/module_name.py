@@ -25,10 +25,10 @@ def is_module_name(name: str) -> bool:
 def checked_module_name(name: str) -> str:
     """The name; raises `UsageError` with one that could be meant."""
     if not is_module_name(name):
-        raise UsageError(
-            f"{shown(name)} is not an identifier of at most {_LONGEST} characters",
-            hint=f"for example '{identifier(name)}'",
-        )
+        none = f"not an identifier of at most {_LONGEST} characters"
+        what = "a keyword of Python" if keyword.iskeyword(name) else none
+        hint = f"for example '{identifier(name)}'"
+        raise UsageError(f"{shown(name)} is {what}", hint=hint)
     return name
 
 
