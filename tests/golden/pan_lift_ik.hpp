@@ -1772,7 +1772,7 @@ template <class Arm> struct CurveParts : CurveSamples<Arm> {
     }
   }
 
-  void look_between(const double* from, const double* to, int parts = 4) noexcept {
+  void look_between(const double* from, const double* to, int parts = kParts) noexcept {
     Sample a = Curve::at(from);
     for (int i = 1; i <= parts; ++i) {
       double q[Arm::kDof];
@@ -1798,6 +1798,7 @@ template <class Arm> struct CurveParts : CurveSamples<Arm> {
  private:
   static constexpr int kDeep = 24, kDoubts = 3;  // how often a part is cut, and how often as the cubic bends by so much
   static constexpr double kBent = 1.5, kStraight = 0.03;  // of what it is in the middle, and at most
+  static constexpr int kParts = 4;
   static constexpr int kSteps = 40;  // of false position; the product of what is left at both ends has to halve in kSoon
   static constexpr int kCubics = 4, kNewton = 8, kSoon = 4;  // first steps that go to roots of cubics, by Newton's method
   static constexpr double kRoundOff = 1e-15;

@@ -125,14 +125,14 @@ def equal_stages(chain: Chain, told: Collection[str] = ()) -> dict[str, Mimic]:
         joint = chain.joints[axis.driver]
         T = T @ axis.T_prev_axis[:3, :3]
         slides = axis.kind == PRISMATIC and joint.name == axis.name
-        sign = _sense(first.axis, T @ axis.axis) if slides and first is not None else 0.0
-        if sign and joint.name in told:
-            continue
-        if sign and first is not None and _same_travel(chain.joints[first.driver], joint):
+        if slides and first is not None and (sign := _sense(first.axis, T @ axis.axis)):
             lead = chain.joints[first.driver]
-            begin = joint.limits.lower if sign > 0 else joint.limits.upper
-            found[joint.name] = Mimic(lead.name, sign, begin - sign * lead.limits.lower)
-            continue
+            if joint.name in told:
+                continue
+            if _same_travel(lead, joint):
+                begin = joint.limits.lower if sign > 0 else joint.limits.upper
+                found[joint.name] = Mimic(lead.name, sign, begin - sign * lead.limits.lower)
+                continue
         first, T = axis if slides and joint.name not in told else None, np.eye(3)
     return found
 

@@ -82,10 +82,10 @@ def build(
     CONFIG is an ikgen.toml, or a pyproject.toml with [tool.ikgen]; by default the one here. Of a folder DIR
     without one those that were generated into it are made again.
     """
-    arms = listed_arms(path := named_config(config), robot)
+    path = named_config(config)
+    arms = listed_arms(path, robot)
     if check:
-        mend = mending(path, arms, robot)
-        return _check(arms, mend, verify=not no_verify, as_json=as_json, quiet=quiet)
+        return _check(path, arms, robot, verify=not no_verify, as_json=as_json, quiet=quiet)
     from ikgen.processes.executors import Workers
     from ikgen.projects.left_outputs import left_outputs
     from ikgen.projects.project_build import build_arms
@@ -120,9 +120,15 @@ def _with_way(path: Path, arm: ArmConfig, outcome: Outcome) -> Outcome:
 
 
 def _check(
-    arms: Sequence[ArmConfig], mend: str, *, verify: bool, as_json: bool, quiet: bool
+    path: Path,
+    arms: Sequence[ArmConfig],
+    robot: Path | None,
+    *,
+    verify: bool,
+    as_json: bool,
+    quiet: bool,
 ) -> int:
-    """Say what is stale, and the command to `mend` it; writes nothing and imports nothing heavy."""
+    """Say what is stale; writes nothing and imports nothing heavy."""
     from ikgen.projects.check import stale_lines
     from ikgen.projects.stale import stale_reasons
 
@@ -139,12 +145,17 @@ def _check(
             for arm, reason in zip(arms, reasons, strict=True)
         ]
         result: dict[str, Any] = {"stale": bool(code), "arms": rows}
-        _echo(result, code, f"{counted(sum(map(bool, reasons)), 'arm')} stale", mend)
+        _echo(
+            result,
+            code,
+            f"{counted(sum(map(bool, reasons)), 'arm')} stale",
+            mending(path, arms, robot),
+        )
     elif not quiet:
         names = [arm.name for arm in arms]
         click.echo("\n".join(stale_lines(list(zip(names, reasons, strict=True)))))
     if code and not quiet:
-        click.echo(f"hint: {mend}", err=True)
+        click.echo(f"hint: {mending(path, arms, robot)}", err=True)
     return code
 
 

@@ -53,10 +53,8 @@ def _robot(derivation: Derivation) -> str:
 def _coupled(derivation: Derivation) -> list[tuple[str, str]]:
     """A line on the joints that follow others beyond what the file says, and how."""
     reading = derivation.reading
-    asked = [one for one in reading.relations if one not in reading.coupled]
-    chosen = [f"{one} (equal stages of a telescope)" for one in reading.coupled[-1:]]
-    words = "; ".join([*asked, *reading.coupled[:-1], *chosen])
-    return [("coupled", words)] if words else []
+    why = " (equal stages of a telescope)" if reading.coupled else ""  # which come last
+    return [("coupled", "; ".join(reading.relations) + why)] if reading.relations else []
 
 
 def _motors(dh: DHChain) -> list[tuple[str, str]]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import combinations
 from typing import TYPE_CHECKING
 
-from ikgen.model.counted import counted
+from ikgen.model.counted import counted, some_of_them
 from ikgen.model.oddity import OddityKind
 
 if TYPE_CHECKING:
@@ -32,12 +32,11 @@ def lost_freedom(reading: Reading, held: Collection[str]) -> str:
     if not {dh.joints[j].name for j in joints}.isdisjoint(held):
         return ""
     *names, last = (f"'{dh.joints[j].name}'" for j in joints)
-    number, reason, spare = counted(ways, "way"), _reason(dh, joints), len(joints) - ways
-    some = "one of them is" if spare == 1 else f"{spare} of them are"
+    number, reason = counted(ways, "way"), _reason(dh, joints)
     return (
         f"joints {', '.join(names)} and {last} move the tip in {number} only"
         f"{f', as they {reason}' * bool(reason)}: a pose has infinitely many "
-        f"solutions unless {some} held or locked"
+        f"solutions unless {some_of_them(len(joints) - ways, 'is', 'are')} held or locked"
     )
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from ikgen.emit.derivation import Unsolved
 from ikgen.errors import IkgenError, UnsolvedChainError, VerificationError
 from ikgen.kinematics.classify import same_line_as_previous
-from ikgen.model.counted import counted
+from ikgen.model.counted import counted, some_of_them
 from ikgen.report.leftover import leftover_text
 
 if TYPE_CHECKING:
@@ -113,7 +113,7 @@ def _counted(dh: DHChain, task: Task) -> tuple[str, str]:
     move = counted(moving, "joint move")
     if moving > task.freedoms:
         count = moving - task.freedoms
-        these = "one of them has" if count == 1 else f"{count} of them have"
+        these = some_of_them(count, "has", "have")
         cause = f"{move} and the task fixes {task.freedoms} freedoms: {these} to be held"
         return cause, " ".join(["--free JOINT"] * count)
     if moving < task.freedoms:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-__all__ = ["counted", "listed", "with_article"]
+__all__ = ["counted", "listed", "some_of_them", "with_article"]
 
 
 def counted(count: int, thing: str) -> str:
@@ -13,6 +13,11 @@ def counted(count: int, thing: str) -> str:
     if count == 1:
         return f"1 {noun}{space}{verb}{'s' if verb else ''}"
     return f"{count} {noun}s{space}{verb}"
+
+
+def some_of_them(count: int, one: str, several: str) -> str:
+    """`one of them is`, `2 of them are`, by the verb of one and of several."""
+    return f"one of them {one}" if count == 1 else f"{count} of them {several}"
 
 
 def listed(names: Sequence[str], most: int = 10) -> str:
