@@ -142,7 +142,11 @@ def test_one_bad_record_leaves_the_others(
     broken, orphan, right = json.loads(said.out)["outputs"]
     assert broken["robot"] is None and not broken["passed"] and not orphan["passed"]
     assert right["passed"] and right["verification"]["python"]["passed"]
-    assert junitparser.JUnitXml.fromfile("j.xml").failures == 2
+    suites = junitparser.JUnitXml.fromfile("j.xml")
+    assert suites.failures == 2
+    cases = [(case.classname, case.name) for suite in suites for case in suite]
+    assert len(cases) == len(set(cases))
+    assert {"broken/arm.outputs", "orphan/arm.outputs", "out/arm.outputs"} <= {c for c, _ in cases}
 
 
 NO_TABLES = ("[]", "[1]", "null", "7", '"text"')

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from tests.support.redundant_arms import SHOULDER_ELBOW_WRIST, TORSO, Joint, serial_urdf
+from tests.support.small_robots import write_robot
 from tests.support.telescopes import RELATIONS, telescope_robot
 
 from ikgen.cli.main import run
@@ -131,3 +132,25 @@ def test_an_arm_whose_joints_follow_none_has_no_such_line(
     (tmp_path / "arm.urdf").write_text(serial_urdf("arm", SHOULDER_ELBOW_WRIST))
     assert run(["from-urdf", str(tmp_path / "arm.urdf"), "-o", str(tmp_path), "--no-verify"]) == 0
     assert "coupled:" not in capsys.readouterr().out
+
+
+def test_what_a_manifest_lacks_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    robot = write_robot(tmp_path / "elbow.urdf")
+    command = [
+        "from-urdf",
+        str(robot),
+        "-o",
+        str(tmp_path),
+        "--no-verify",
+        "--emit",
+        "python,moveit",
+    ]
+    assert run(command) == 0
+    told = capsys.readouterr().out
+    manifest = tmp_path / "elbow_ik_moveit/package.xml"
+    line = re.search(r"^fill in: +(.*)$", told, re.MULTILINE)
+    assert line and line[1] == (f"maintainer and license of {manifest} (--maintainer, --license)")
+    assert run([*command, "--maintainer", "Ada <ada@example.org>"]) == 0
+    assert f"license of {manifest} (--license)" in capsys.readouterr().out
+    assert run([*command, "--maintainer", "Ada <ada@example.org>", "--license", "MIT"]) == 0
+    assert "fill in" not in capsys.readouterr().out

@@ -87,6 +87,9 @@ def test_arguments_are_listed_where_a_file_cannot_be_expanded(tmp_path: Path) ->
     assert listed == (
         "arguments that the file takes (--arg): model:=ur5, hand:=none, prefix (no default)"
     )
+    with pytest.raises(BadDescriptionError) as caught:
+        read_tree(Request(file, args={"prefx": "a_", "model": "ur3"}))
+    assert caught.value.hint.endswith("prefix (no default); not among them: 'prefx'")
 
 
 def test_what_is_odd_about_joints_that_do_not_move_the_chain_is_left_out(tmp_path: Path) -> None:

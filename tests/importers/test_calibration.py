@@ -135,6 +135,21 @@ def test_summary_and_json_have_the_calibration(
     assert json.loads(capsys.readouterr().out)["calibration"]["m"] == pytest.approx(0.1)
 
 
+def test_inspect_says_that_the_rows_are_one_arms_own(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    request = calibrated("[[joints]]\na = 1e-3\n" + 3 * "[[joints]]\n", tmp_path, suffix="toml")
+    words = ["inspect", str(FIXTURES / "scara_standard.toml"), "--no-advice"]
+    assert run(words) == 0
+    assert "calibrated" not in capsys.readouterr().out
+    words += ["--calibration", str(request.calibration)]
+    assert run(words) == 0
+    said = re.search(r"^calibrated: (.*)$", capsys.readouterr().out, re.MULTILINE)
+    assert said and said[1].endswith("own.toml: up to 0.001 m and 0 rad off the model")
+    assert run([*words, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["chain"]["calibration"] == said[1]
+
+
 def test_the_page_on_fleets_has_a_row_for_each_of_the_arm() -> None:
     page = FIXTURES.parent / "docs" / "how-to" / "calibrated-fleets.md"
     texts = re.findall(r'```toml title="rows.toml"\n(.*?)```', page.read_text(), re.DOTALL)

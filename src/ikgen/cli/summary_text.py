@@ -37,9 +37,22 @@ def summary(generation: Generation) -> str:
     if dh.symbols:
         words = "; verified with sample numbers" if generation.reports else ""
         lines.append(("fill in", f"{', '.join(dh.symbols)}{words}"))
+    lines += _manifest(generation)
     lines += [("wrote", str(path)) for path in generation.files]
     lines.append(("time", f"{generation.seconds:.1f} s"))
     return table([(f"{name}:", text) for name, text in lines], indent="")
+
+
+def _manifest(generation: Generation) -> list[tuple[str, str]]:
+    """What the manifest of a ROS package has no more than a placeholder for."""
+    module = generation.derivation.module
+    values = ("maintainer", module.maintainer), ("license", module.license)
+    missing = [name for name, value in values if value is None]
+    manifest = next((path for path in generation.files if path.name == "package.xml"), None)
+    if manifest is None or not missing:
+        return []
+    options = ", ".join(f"--{name}" for name in missing)
+    return [("fill in", f"{' and '.join(missing)} of {manifest} ({options})")]
 
 
 def _robot(derivation: Derivation) -> str:

@@ -205,7 +205,7 @@ def _with_offsets(reading: Reading, request: Request) -> Reading:
 
 def read_tree(request: Request) -> JointTree:
     """All links and joints of the request's file."""
-    from ikgen.importers import load_tree
+    from ikgen.importers import argument_words, load_tree
 
     try:
         return load_tree(
@@ -215,17 +215,9 @@ def read_tree(request: Request) -> JointTree:
             trust=request.trust,
         )
     except BadDescriptionError as error:
-        error.hint = "\n".join(filter(None, [error.hint, _argument_words(request)]))
+        words = argument_words(request.robot, request.args, request.package_paths)
+        error.hint = "\n".join(filter(None, [error.hint, words]))
         raise
-
-
-def _argument_words(request: Request) -> str:
-    """The arguments that the file takes, in words; "" where there are none."""
-    from ikgen.importers import taken_arguments
-
-    found = taken_arguments(request.robot, request.package_paths)
-    words = (f"{n}:={x}" if x is not None else f"{n} (no default)" for n, x in found.items())
-    return f"arguments that the file takes (--arg): {', '.join(words)}" if found else ""
 
 
 def _read_table(request: Request, free: tuple[str, ...]) -> Reading:

@@ -21,7 +21,14 @@ from ikgen.plugins import PlugIn, blaming, named_object, plug_ins
 if TYPE_CHECKING:
     from ikgen.model.joint_tree import JointTree
 
-__all__ = ["IMPORTERS", "Importer", "importer_of", "load_tree", "taken_arguments"]
+__all__ = [
+    "IMPORTERS",
+    "Importer",
+    "argument_words",
+    "importer_of",
+    "load_tree",
+    "taken_arguments",
+]
 
 _NOTHING: Mapping[str, str] = MappingProxyType({})
 
@@ -188,3 +195,15 @@ def taken_arguments(path: str | Path, package_paths: Sequence[Path] = ()) -> dic
     except IkgenError:
         return {}
     return {name: robot.arguments.get(name, default) for name, default in found.items()}
+
+
+def argument_words(
+    path: str | Path, given: Mapping[str, str], package_paths: Sequence[Path] = ()
+) -> str:
+    """The arguments that a description takes, and which of those given are none of them; "" where there
+    are none."""
+    found = taken_arguments(path, package_paths)
+    words = (f"{n}:={x}" if x is not None else f"{n} (no default)" for n, x in found.items())
+    others = " and ".join(f"'{name}'" for name in given if name not in found)
+    none = f"; not among them: {others}" if others else ""
+    return f"arguments that the file takes (--arg): {', '.join(words)}{none}" if found else ""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections import Counter
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -106,13 +107,17 @@ def _with_configs(records: Sequence[Path], robot: Path | None) -> list[tuple[Pat
 
 
 def write_junit(path: Path, results: Sequence[Recheck]) -> None:
-    """JUnit XML: one suite an output; findings that no verification holds become a suite of their own."""
+    """JUnit XML: one suite an output; findings that no verification holds become a suite of their own.
+    Where outputs share a name their folders tell them apart."""
     from ikgen.verify.junit import write_junit_xml
     from ikgen.verify.verification_report import CheckResult, VerificationReport
 
     suites = []
+    times = Counter(result.name for result in results)
     for result in results:
         record = result.record
+        apart = times[result.name] > 1
+        name = (result.path.parent / result.name).as_posix() if apart else result.name
         checks = tuple(
             CheckResult("up to date", False, 1, 1, detail=f.message, worst_case=f.remedy)
             for f in result.findings
@@ -120,6 +125,6 @@ def write_junit(path: Path, results: Sequence[Recheck]) -> None:
         request = record.request if record else None
         base, tip, task = (request.base, request.tip, request.task) if request else ("", "", "")
         own = VerificationReport("outputs", base or "", tip or "", task or "", 0, 0, checks)
-        suites += [(result.name, report) for report in (own, *result.reports.values())]
+        suites += [(name, report) for report in (own, *result.reports.values())]
     path.parent.mkdir(parents=True, exist_ok=True)
     write_junit_xml(path, suites)

@@ -350,3 +350,17 @@ def test_degrees_and_millimetres_are_told(tmp_path: Path) -> None:
     path.write_text(f'convention = "modified"\n{table}'.replace("431.8", "0.4").replace("-90", "1"))
     assert not any("lengths" in str(one) for one in read_dh_table(path)[0].warnings)
     assert not any("look" in str(one) for one in read_dh_table(path)[0].warnings)
+
+
+def test_a_single_length_in_millimetres_is_named(tmp_path: Path) -> None:
+    path = tmp_path / "table.toml"
+    path.write_text(
+        'convention = "modified"\n'
+        + "".join(
+            f'[[joints]]\nname = "j{i}"\ntype = "revolute"\nalpha = "0"\na = "{a}"\nd = "{d}"\n'
+            for i, (a, d) in enumerate([("0", "0.3"), ("0.4", "0"), ("0.2", "-85"), ("0", "0.1")])
+        )
+    )
+    told = [one for one in map(str, read_dh_table(path)[0].warnings) if "look" in one]
+    (only,) = told
+    assert only.endswith("joint 3: d = -85 looks like mm, other lengths like m: kept as it is")

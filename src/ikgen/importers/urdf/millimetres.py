@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import TypeVar
 
 import numpy as np
 
 from ikgen.importers.xml_document import Place
 from ikgen.model.joint_tree import Joint, JointType
 
-__all__ = ["longer_than_arms", "note_millimetres", "shorter_than_arms"]
+__all__ = ["longer_than_arms", "note_millimetres", "shorter_than_arms", "some_in_millimetres"]
+
+_Name = TypeVar("_Name")
 
 _FARTHEST = 20.0
 """Most (m) from a moving joint to the one before, along an axis: longer than the booms of robots. No arm's
@@ -27,13 +30,12 @@ def note_millimetres(joints: Sequence[Joint], place: Place) -> None:
     not, else of all at once where they are several. They are kept as they are."""
     moving = [joint for joint in joints if joint.type.moves_on_one_axis]
     lengths = {joint.name: _length(joint) for joint in _carried(moving, joints)}
-    near = [length for length in lengths.values() if 0.0 < length <= _FARTHEST]
-    far = {name: length for name, length in lengths.items() if length > _FARTHEST}
-    if len(far) < len(near) and min(far.values(), default=0.0) > _TIMES * max(near):
+    far = some_in_millimetres(lengths)
+    if far:
         lines = {joint.name: joint.line for joint in joints}
-        for name, length in far.items():
-            text = f"joint '{name}': its origin {length:g} m away looks like mm, others' like m"
-            place.warn_at(lines[name], f"{text}: kept as it is")
+        for name in far:
+            where = f"joint '{name}': its origin {lengths[name]:g} m away"
+            place.warn_at(lines[name], f"{where} looks like mm, others' like m: kept as it is")
         return
     if _longer_than_arms(joints):
         longest = max(map(_length, moving))
@@ -41,6 +43,14 @@ def note_millimetres(joints: Sequence[Joint], place: Place) -> None:
         place.warn(None, text)
     if words := shorter_than_arms([_length(joint) + _travel(joint) for joint in joints]):
         place.warn(None, words)
+
+
+def some_in_millimetres(lengths: Mapping[_Name, float]) -> list[_Name]:
+    """Which lengths (m) are longer than those of any robot's links; none where most are."""
+    near = [length for length in lengths.values() if 0.0 < length <= _FARTHEST]
+    far = [name for name, length in lengths.items() if length > _FARTHEST]
+    some = len(far) < len(near) and min((lengths[n] for n in far), default=0.0) > _TIMES * max(near)
+    return far if some else []
 
 
 def longer_than_arms(lengths: Sequence[float]) -> bool:
