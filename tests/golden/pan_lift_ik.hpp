@@ -1710,7 +1710,7 @@ template <class Arm> struct RightRows {
  private:
   static bool between(const HeldAim<Arm>& aim, const double* a, const double* b) noexcept {
     using Curve = CurveSamples<Arm>;
-    if (!RowPair<Arm>::within(Policy::kAlike, a, b)) return false;
+    if (!RowPair<Arm>::within(Policy::kNeighbouring, a, b)) return false;
     double middle[Arm::kDof];
     for (int j = 0; j < Arm::kDof; ++j) middle[j] = a[j] + 0.5 * Row::change(j, a, b);
     const double off = PoseError<Arm>(middle, aim).largest();
@@ -2259,9 +2259,9 @@ template <class Arm> struct RowStarts {
 
   bool collapsed(const Start& one) const noexcept {
     if (SingularValue<Arm>::below(one.q, kContinuum)) return false;
-    const auto beside = [](const Start& s) noexcept { return Pair::within(Policy::kAlike, s.start, s.q); };
+    const auto beside = [](const Start& s) noexcept { return Pair::within(Policy::kNeighbouring, s.start, s.q); };
     return std::any_of(all.begin(), all.begin() + count, [&](const Start& other) noexcept {
-      return other.marked && Pair::within(Policy::kAlike, one.q, other.q) && !(beside(one) && beside(other));
+      return other.marked && Pair::within(Policy::kNeighbouring, one.q, other.q) && !(beside(one) && beside(other));
     });
   }
 
@@ -2284,7 +2284,7 @@ template <class Arm> struct RowStarts {
     Start& one = at(count) = start;
     one.judge();
     for (int k = 0; k < count && beside && one.nearby && !one.settled; ++k)
-      if (at(k).nearby && Pair::within(Policy::kAlike, one.q, at(k).q)) return;
+      if (at(k).nearby && Pair::within(Policy::kNeighbouring, one.q, at(k).q)) return;
     ++count;
     if (!one.settled) return;
     if (one.nearby || one.marked)
@@ -2837,7 +2837,7 @@ template <class Arm> struct CarefulSolve {
       int nearby = 0;
       const double* q = Row::row(found, k);
       for (int i = 0; i < k && Row::flag(found, k); ++i)
-        if (kept[i] && Row::flag(found, i) && RowPair<Arm>::within(Policy::kAlike, q, Row::row(found, i))) ++nearby;
+        if (kept[i] && Row::flag(found, i) && RowPair<Arm>::within(Policy::kNeighbouring, q, Row::row(found, i))) ++nearby;
       kept[k] = nearby < Policy::kCrowd;
       room -= Row::flag(found, k) ? 0 : 1;
     }
@@ -3617,10 +3617,10 @@ inline void order_rows(const Eigen::Isometry3d& pose, const typename Arm::Joints
 struct Policy {
   static constexpr int kCrowd = 4, kTries = 16, kPatience = 5;
   static constexpr double kArrived = 5e-10, kExact = 1e-12, kPoseTolerance = 1e-06, kOrthonormal = 1e-14, kLevel
-      = 0.0001, kCoincident = 1e-06, kAlike = 0.01, kHalfway = 2e-14, kMeeting = 2e-05, kLimitTolerance = 2e-10,
-      kLimitReach = 1e-05, kTryStep = 0.39269908169872414, kSingularBelow = 1e-07, kContinuumBelow = 0.001,
-      kFoldReach = 0.0001, kBesideReach = 0.0, kAnywhere = 1000.0, kLeastDamping = 1e-14, kDamping = 0.001,
-      kLargestStep = 0.3, kConverged = 1e-13, kProgress = 0.8;
+      = 0.0001, kCoincident = 1e-06, kNeighbouring = 0.01, kHalfway = 2e-14, kMeeting = 2e-05, kLimitTolerance =
+      2e-10, kLimitReach = 1e-05, kTryStep = 0.39269908169872414, kSingularBelow = 1e-07, kContinuumBelow =
+      0.001, kFoldReach = 0.0001, kBesideReach = 0.0, kAnywhere = 1000.0, kLeastDamping = 1e-14, kDamping =
+      0.001, kLargestStep = 0.3, kConverged = 1e-13, kProgress = 0.8;
   static constexpr RefineStage kRefinement[] = {{3, 1e-12, 0.1}, {6, 1e-12, 0.001}, {30, 0.0, 0.0}};
 };
 

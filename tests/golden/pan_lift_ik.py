@@ -408,7 +408,7 @@ class _Policy:
     orthonormal: float  # how far a rotation's entries may be off by round-off
     level: float  # by how much a heading's squared length may be short of 1
     coincident: float  # rad or m: rows closer than that are one
-    alike: float  # rad or m: rows closer than that in every joint are neighbours
+    neighbouring: float  # rad or m: rows closer than that in every joint are neighbours
     halfway: float  # error up to which the pose is that of what is between two rows
     crowd: int  # neighbours on a continuum, at most
     limit_tolerance: float  # rad or m: a row no farther outside a limit is put back on it
@@ -930,7 +930,7 @@ def _thinned(arm: _Arm, rows: list[_Found]) -> list[_Found]:
     for row, singular in rows:
         others = [other for other, flag in kept if flag] if singular else []
         gaps = np.abs(_differences(arm, np.array(row), np.array(others).reshape(-1, len(row))))
-        if (gaps.max(axis=1) < arm.policy.alike).sum() < arm.policy.crowd:
+        if (gaps.max(axis=1) < arm.policy.neighbouring).sum() < arm.policy.crowd:
             kept.append((row, singular))
     return kept
 
@@ -1620,8 +1620,8 @@ def _collapsed(arm: _Arm, starts: _Starts, led: _Ends) -> _Flags:
     alone = (led.error < arm.policy.arrived) & (led.sigma > _CONTINUUM)
     some = alone[a] & alone[b]
     a, b = a[some], b[some]
-    same = np.abs(_differences(arm, led.q[a], led.q[b])).max(axis=1) < arm.policy.alike
-    same &= np.maximum(way[a], way[b]) > arm.policy.alike  # not where two branches meet
+    same = np.abs(_differences(arm, led.q[a], led.q[b])).max(axis=1) < arm.policy.neighbouring
+    same &= np.maximum(way[a], way[b]) > arm.policy.neighbouring  # not where two branches meet
     out = np.zeros(len(pose), dtype=bool)
     out[a[same]] = out[b[same]] = True
     return out
@@ -1725,7 +1725,7 @@ def _untold(arm: _Arm, T: Array, a: Array, b: Array) -> _Flags:
     """Which singular rows a (k, dof) towards aims T (k, ...) nothing tells from others nearby, b (k,
     dof)."""
     gaps = _differences(arm, a, b)
-    near, out = np.abs(gaps).max(axis=1) < arm.policy.alike, np.zeros(len(a), dtype=bool)
+    near, out = np.abs(gaps).max(axis=1) < arm.policy.neighbouring, np.zeros(len(a), dtype=bool)
     if not near.any():
         return out
     middle, T = (a + 0.5 * gaps)[near], T[near]
@@ -2124,14 +2124,16 @@ def _meetings(arm: _Arm, at: _Reduced, T: Array, group: _Index, facing: bool) ->
     """Which samples of a `group` (n,) are by a step from each other on one curve, if `facing` in each
     other's way."""
     one, other = _pairs_within(group)
+    gap = np.abs(_differences(arm, at.q[one], at.q[other])[:, list(arm.moving)]).max(axis=1)
+    close = gap < _MEETING * arm.policy.try_step
+    one, other = one[close], other[close]
     a, b = _some_of(at, one), _some_of(at, other)
     turn = (a.still * b.still).sum(axis=1)
     sense = np.where(turn < 0.0, -1.0, 1.0)
     mean, _ = _unit(a.still + sense[:, None] * b.still)
     a = a._replace(still=mean)
-    way, ahead, beside = _way(arm, a, b.q)
-    near = np.abs(way).max(axis=1) < _MEETING * arm.policy.try_step
-    near &= (beside < _curve_walks_BESIDE) & ((-turn if facing else np.abs(turn)) > _FACING)
+    _, ahead, beside = _way(arm, a, b.q)
+    near = (beside < _curve_walks_BESIDE) & ((-turn if facing else np.abs(turn)) > _FACING)
     a, one, other, ahead = _some_of(a, near), one[near], other[near], ahead[near]
     if len(one):
         on, a = _reached(arm, a, at.q[other], T[one])
@@ -2299,14 +2301,17 @@ def _followed(arm: _Arm, q: Array, T: Array) -> _Walked:
 def _on_curves(arm: _Arm, parts: _Parts, owner: _Index, q: Array, T: Array) -> _Flags:
     """Which rows q (n, dof) lie on the curves of their starts `owner` (n,), towards aims T (k, ...)."""
     out, moving = np.zeros(len(q), dtype=bool), list(arm.moving)
-    row, part = np.nonzero(owner[:, None] == parts.owner)
-    parts = _some_of(parts, part)
+    order = np.argsort(parts.owner, kind="stable")
+    begin, end = (np.searchsorted(parts.owner[order], owner, side=x) for x in ("left", "right"))
+    row = np.repeat(np.arange(len(q)), end - begin)
+    part = order[begin[row] + _places(row)]
     chord = (parts.b.q - parts.a.q)[:, moving]
-    way = _differences(arm, parts.a.q, q[row])[:, moving]
-    share = (way * chord).sum(axis=1) / (chord**2).sum(axis=1)
+    chord, size = chord[part], (chord**2).sum(axis=1)[part]
+    way = _differences(arm, parts.a.q[part], q[row])[:, moving]
+    share = (way * chord).sum(axis=1) / size
     near = np.abs(way - share[:, None] * chord).max(axis=1) < _curve_walks_BESIDE
     near &= (share > -_OVER) & (share < 1.0 + _OVER)
-    row, parts = row[near], _some_of(parts, near)
+    row, parts = row[near], _some_of(parts, part[near])
     on, _ = _reached(arm, _between(arm, parts, share[near], T), q[row], T[parts.owner])
     out[row[on]] = True
     return out
@@ -2322,26 +2327,20 @@ _limit_curves_WAY = 1.2  # of `policy.try_step`: by so much joints move from one
 
 
 def _rows_along(
-    arm: _Arm,
-    q: Array,
-    T: Array,
-    stands: Sequence[tuple[int, Row]],
-    others: Sequence[tuple[int, Row]] = (),
-) -> tuple[_Index, Array, _Flags]:
+    arm: _Arm, q: Array, T: Array, stands: Sequence[tuple[int, Row]]
+) -> tuple[_Index, Array]:
     """Rows (n, dof) inside the limits, whole turns aside, of the continua through solutions q (k, dof) of
-    aims T (k, ...), and whose they are (n,)."""
-    marks = [*stands, *others]
+    aims T (k, ...), and which of these they are of (n,)."""
     with np.errstate(all="ignore"):
         parts, _, same, worst = _followed(arm, q, T)
         whole = np.bincount(parts.owner, minlength=len(q)) >= _LEAST
         whole &= worst < arm.policy.arrived
-        whose = same[np.array([k for k, _ in marks], dtype=np.intp)]
-        on = whole[whose]
-        if on.any():
-            rows = np.array([row for (_, row), some in zip(marks, on) if some])
-            on[on] = _on_curves(arm, parts, whose[on], rows, T)
-        stood = on[: len(stands)]
-        whole[whose[: len(stands)][stood]] = False
+        on_whole = ((int(same[k]), row) for k, row in stands if whole[same[k]])
+        marks = list(dict.fromkeys(on_whole))
+        if marks:
+            whose = np.array([k for k, _ in marks], dtype=np.intp)
+            on = _on_curves(arm, parts, whose, np.array([row for _, row in marks]), T)
+            whole[whose[on]] = False
         parts = _some_of(parts, whole[parts.owner])
         parts = _some_of(parts, np.lexsort((parts.place, parts.owner)))
         parts = _some_of(parts, _beside_least(arm, parts))
@@ -2351,7 +2350,7 @@ def _rows_along(
     ends, error, _, _ = _refined(arm, rows[order], T[parts.owner[order]])
     right = error < arm.policy.arrived
     owner, first = np.unique(parts.owner[order[right]], return_index=True)
-    return owner, ends[right][first], on[len(stands) :]
+    return owner, ends[right][first]
 
 
 def _beside_least(arm: _Arm, parts: _Parts) -> _Flags:
@@ -2643,19 +2642,14 @@ def _take_along(arm: _Arm, asked: _Asked, limits: bool, out: list[_Answer]) -> N
     """Adds to answers rows inside the limits of the continua that rows outside are of, if none stands for
     them."""
     beyond = [_outside(arm, one, asked.seed(i), limits) for i, one in enumerate(out)]
-    left = [list(rows) for rows in beyond]
-    while any(left):
-        some = [i for i, rows in enumerate(left) if rows]
-        q = np.array([left[i].pop(0) for i in some])
-        stands = [(k, row) for k, i in enumerate(some) for row, flag in out[i].rows if flag]
-        others = [(k, row) for k, i in enumerate(some) for row in left[i]]
-        aim = asked.aim(arm, np.array(some))
-        owner, rows, passed = _rows_along(arm, q, aim, stands, others)
+    whose = [i for i, rows in enumerate(beyond) for _ in rows]
+    if whose:
+        q = np.array([row for rows in beyond for row in rows])
+        stands = [(k, row) for k, i in enumerate(whose) for row, flag in out[i].rows if flag]
+        owner, rows = _rows_along(arm, q, asked.aim(arm, np.array(whose)), stands)
         for k, row in zip(owner.tolist(), rows.tolist()):
-            _add_inside(arm, asked, some[k], [(tuple(row), True)], limits, out)
-        for k, i in enumerate(some):
-            left[i] = [row for (of, row), on in zip(others, passed) if of == k and not on]
-    which = [i for i, rows in enumerate(beyond) for _ in rows if not out[i].stands]
+            _add_inside(arm, asked, whose[k], [(tuple(row), True)], limits, out)
+    which = [i for i in whose if not out[i].stands]
     if which:
         q = _turned_inside(arm, np.array([row for i in dict.fromkeys(which) for row in beyond[i]]))
         lost = asked.at(np.array(which))
@@ -3866,7 +3860,7 @@ _ARM = _Arm(
         orthonormal=1e-14,
         level=0.0001,
         coincident=1e-06,
-        alike=0.01,
+        neighbouring=0.01,
         halfway=2e-14,
         crowd=4,
         limit_tolerance=2e-10,

@@ -13,7 +13,7 @@ def test_tolerances_are_ordered() -> None:
     p = SolvePolicy()
     chains = (
         (0.0, p.orthonormal, p.halfway, p.converged, p.exact, p.arrived, p.coincident, p.meeting,
-         p.alike, 1.0),
+         p.neighbouring, 1.0),
         (0.0, p.singular_below, p.fold_reach, p.continuum_below, p.fold, 1.0),
         (0.0, p.limit_tolerance, p.limit_reach, p.coincident * 100.0),
         (0.0, p.least_damping, p.damping, p.largest_step, p.progress, 1.0),

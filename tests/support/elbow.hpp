@@ -23,7 +23,7 @@ struct Policy {
   static constexpr double kCoincident = 1e-6;
   static constexpr double kMeeting = 2e-5, kLimitTolerance = 1e-9, kLimitReach = 1e-5, kTryStep = 0.4, kSingularBelow = 1e-7;
   static constexpr double kContinuumBelow = 1e-3, kLeastDamping = 1e-12, kDamping = 1e-3, kLargestStep = 0.3;
-  static constexpr double kConverged = 1e-13, kProgress = 0.8, kExact = 1e-12, kAlike = 1e-2, kHalfway = 2e-14;
+  static constexpr double kConverged = 1e-13, kProgress = 0.8, kExact = 1e-12, kNeighbouring = 1e-2, kHalfway = 2e-14;
   static constexpr double kFoldReach = 1e-4, kBesideReach = 0.0, kAnywhere = 1e3, kBrokenReach = 0.0;
   static constexpr RefineStage kRefinement[] = {{3, 1e-12, 0.1}, {30, 0.0, 0.0}};
 };

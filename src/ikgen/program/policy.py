@@ -43,8 +43,8 @@ class SolvePolicy:
     - `orthonormal`: how far a rotation's entries may be off by round-off.
     - `level`: by how much a heading's squared length may be short of 1.
     - `coincident`: rows closer than that (rad or m) are one.
-    - `alike`: rows closer than that in every joint (rad or m) are neighbours. Singular ones are one, if the
-      pose is theirs between them; of a continuum `crowd` stay, of a search on a grid the best.
+    - `neighbouring`: rows closer than that in every joint (rad or m) are neighbours. Singular ones are one,
+      if the pose is theirs between them; of a continuum `crowd` stay, of a search on a grid the best.
     - `halfway`: error up to which the pose is that of what is between two rows.
     - `crowd`: neighbours on a continuum, at most: as many as solutions meet where two folds do.
     - `meeting`: how close branches are where their rows are compared.
@@ -87,7 +87,7 @@ class SolvePolicy:
     orthonormal: float = 1e-14
     level: float = LEVEL
     coincident: float = 1e-6
-    alike: float = 1e-2
+    neighbouring: float = 1e-2
     halfway: float = 2e-14
     crowd: int = 4
     meeting: float = 2e-5

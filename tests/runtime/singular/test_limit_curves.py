@@ -38,7 +38,7 @@ def test_a_row_is_right_though_its_sample_did_not_converge(
 
     monkeypatch.setattr(limit_curves, "_least_outside", beside)
     pose = forward(arm.chain, AT)[None]
-    owner, rows, _ = rows_along(arm, AT[None], pose, [])
+    owner, rows = rows_along(arm, AT[None], pose, [])
     assert owner.tolist() == [0]
     assert np.abs(forward(arm.chain, rows[0]) - pose[0]).max() < 1e-9
     assert outside(arm, rows, True)[0] < 1e-5
@@ -51,10 +51,14 @@ def test_none_is_taken_where_one_on_it_stands_for_the_continuum(arm: Any) -> Non
         assert len(rows_along(arm, AT[None], pose, [(0, tuple(row.tolist()))])[0]) == count
 
 
-def test_others_that_are_on_the_continuum_are_told(arm: Any) -> None:
+def test_solutions_on_one_continuum_have_one_row(arm: Any) -> None:
     pose = forward(arm.chain, AT)[None]
     on = AT - 0.7 * (np.eye(6)[5] - np.eye(6)[3])
-    others = [(0, tuple(row.tolist())) for row in (on, on + 0.1 * np.eye(6)[0])]
-    owner, _, passed = rows_along(arm, AT[None], pose, [], others)
-    assert owner.tolist() == [0]
-    assert passed.tolist() == [True, False]
+    both, aims = np.array([AT, on]), np.concatenate([pose, pose])
+    assert rows_along(arm, both, aims, [])[0].tolist() == [0]
+    stands = [(1, tuple((on + 0.3 * (np.eye(6)[3] - np.eye(6)[5])).tolist()))]
+    assert len(rows_along(arm, both, aims, stands)[0]) == 0
+    other = AT + np.eye(6)[0]  # the same continuum of another pose
+    both, aims = np.array([AT, other]), np.concatenate([pose, forward(arm.chain, other)[None]])
+    assert rows_along(arm, both, aims, [])[0].tolist() == [0, 1]
+    assert rows_along(arm, both, aims, [(0, tuple(on.tolist()))])[0].tolist() == [1]

@@ -29,7 +29,7 @@ from ikgen.runtime.python.singular.meeting_rows import (
 Array = NDArray[np.float64]
 POLICY = SimpleNamespace(
     broken_reach=0.1, fold_reach=0.01, converged=1e-12, arrived=1e-9, exact=1e-10, coincident=1e-6,
-    alike=0.3, halfway=1e-9,
+    neighbouring=0.3, halfway=1e-9,
 )  # fmt: skip
 
 
@@ -149,13 +149,13 @@ def test_singular_rows_are_one_where_the_pose_is_theirs_between_them_too() -> No
     off = float(forward(chain, np.zeros(2))[0, 3] - T[0, 3])
 
     def told(halfway: float, singular: bool = True, alike: float = 0.3) -> bool:
-        policy = SimpleNamespace(halfway=halfway, alike=alike, arrived=0.0)
+        policy = SimpleNamespace(halfway=halfway, neighbouring=alike, arrived=0.0)
         arm = plane_arm(chain, policy)
         return repeats(arm, T, rows[0], [(rows[1], singular)])
 
     assert told(1.01 * off) and not told(0.99 * off)
     assert not told(1.0, singular=False) and not told(1.0, alike=0.1)
-    arm = plane_arm(chain, SimpleNamespace(halfway=1.0, alike=1.0, arrived=0.0))
+    arm = plane_arm(chain, SimpleNamespace(halfway=1.0, neighbouring=1.0, arrived=0.0))
     assert not repeats(arm, T, rows[0], [])
 
 
@@ -175,7 +175,7 @@ def test_singular_rows_are_one_where_the_curve_between_them_has_the_pose(
         return SimpleNamespace(left=np.full(len(q), left))
 
     monkeypatch.setattr(meeting_rows, "samples_beside", samples_beside)
-    policy = SimpleNamespace(halfway=2e-14, alike=0.3, arrived=1.0)
+    policy = SimpleNamespace(halfway=2e-14, neighbouring=0.3, arrived=1.0)
     arm = plane_arm(chain, policy)
     T = forward(chain, np.array(rows[0]))
     assert repeats(arm, T, rows[0], [(rows[1], True)]) == told
@@ -187,7 +187,7 @@ def test_rows_of_many_poses_are_told_apart_as_one_after_the_other_is() -> None:
     frames = np.tile(np.eye(4), (4, 1, 1))
     frames[1:, 0, 3] = 0.5
     motions = ((0, True, 1.0, 0.0), (1, True, 1.0, 0.0), (2, False, 1.0, 0.0))
-    policy = SimpleNamespace(coincident=1e-6, alike=0.3, halfway=0.02, arrived=0.0)
+    policy = SimpleNamespace(coincident=1e-6, neighbouring=0.3, halfway=0.02, arrived=0.0)
     chain = chain_of(frames, motions, 3)
     arm = plane_arm(chain, policy)
     rng = np.random.default_rng(2)

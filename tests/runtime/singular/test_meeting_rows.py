@@ -20,7 +20,7 @@ from ikgen.runtime.python.singular.meeting_rows import Starts, _fresh, leads_of,
 Array = NDArray[np.float64]
 ARM: Any = SimpleNamespace(
     period=(WHOLE_TURN, 0.0),
-    policy=SimpleNamespace(coincident=1e-6, alike=0.05),
+    policy=SimpleNamespace(coincident=1e-6, neighbouring=0.05),
     beside=np.eye(4)[None],
 )
 

@@ -20,10 +20,7 @@ namespace ikgen_runtime {
 
 namespace elimination {
 
-struct SharedPairs {
-  Index count = 0;
-  std::array<Complex, 12> z4, z5;
-};
+using SharedPairs = PairsUpTo<12>;
 
 template <Index kShare>
 struct SharedEquations {
@@ -90,8 +87,6 @@ struct SharedEquations {
     }
     return out;
   }
-
-  static double square(double x) noexcept { return x * x; }
 
   // The six equations in (1, c5, s5).
   static Mat<6, 3> inner(const Pencil& of, double c, double s) noexcept {

@@ -27,6 +27,8 @@ struct Mat {  // row-major
 using Turning = std::array<bool, 6>;  // which of the six joints turn; the others slide
 inline constexpr Turning kAllTurn = {true, true, true, true, true, true};
 
+inline double square(double x) noexcept { return x * x; }
+
 inline Frame moved(const Frame& a, bool turns, double value) noexcept {
   return turns ? rotated(a, std::cos(value), std::sin(value)) : slid(a, value);
 }

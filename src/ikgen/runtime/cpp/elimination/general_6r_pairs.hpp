@@ -13,10 +13,11 @@ namespace ikgen_runtime {
 
 namespace elimination {
 
-struct Pairs {
+template <Index kMost> struct PairsUpTo {
   Index count = 0;
-  std::array<Complex, 3> z4, z5;
+  std::array<Complex, kMost> z4, z5;
 };
+using Pairs = PairsUpTo<3>;
 
 using Null = std::array<double, 12>;
 

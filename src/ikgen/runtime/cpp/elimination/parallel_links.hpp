@@ -60,8 +60,6 @@ inline void set_turning(const double (&R)[3][3], const double (&v)[3], double (&
   }
 }
 
-inline double square(double x) noexcept { return x * x; }
-
 inline double length_of(const double (&v)[3]) noexcept { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 
 // At a solution e n = c1 z_4 x D + c3 D x z_1 + d z_1 x z_4, and D is the way along the links; axes 2 and 3 reach less

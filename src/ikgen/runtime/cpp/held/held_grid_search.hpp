@@ -42,7 +42,7 @@ template <class Arm, class Solver> struct HeldGridSearch {
     std::stable_sort(search.starts, search.starts + kStarts, [](const Start& a, const Start& b) { return a.cost < b.cost; });
     out.count = 0;
     for (const Start& s : search.starts)
-      if (s.cost < kInfinity && !RowPair<Arm>::any_within(Arm::Policy::kAlike, s.q, out))
+      if (s.cost < kInfinity && !RowPair<Arm>::any_within(Arm::Policy::kNeighbouring, s.q, out))
         SolutionRows<Arm>::add(out, s.q, SingularValue<Arm>::below(s.q, Arm::Policy::kSingularBelow));
     out.status = out.count > 0 ? Arm::Status::Ok : search.real ? Arm::Status::Limits : Arm::Status::Unreachable;
   }

@@ -174,7 +174,7 @@ template <class Arm> struct NearSurface {
   // Whether one is next to a solution that was found.
   bool known(const Sample& s) const noexcept {
     bool some = false;
-    for (int k = 0; k < count && !some && s.left < kSolved; ++k) some = RowPair<Arm>::within(Policy::kAlike, s.q, found[k]);
+    for (int k = 0; k < count && !some && s.left < kSolved; ++k) some = RowPair<Arm>::within(Policy::kNeighbouring, s.q, found[k]);
     return some;
   }
 };

@@ -34,7 +34,7 @@ template <class Arm> struct RightRows {
   // curve beside that.
   static bool between(const HeldAim<Arm>& aim, const double* a, const double* b) noexcept {
     using Curve = CurveSamples<Arm>;
-    if (!RowPair<Arm>::within(Policy::kAlike, a, b)) return false;
+    if (!RowPair<Arm>::within(Policy::kNeighbouring, a, b)) return false;
     double middle[Arm::kDof];
     for (int j = 0; j < Arm::kDof; ++j) middle[j] = a[j] + 0.5 * Row::change(j, a, b);
     const double off = PoseError<Arm>(middle, aim).largest();

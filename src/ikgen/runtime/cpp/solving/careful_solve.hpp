@@ -72,7 +72,7 @@ template <class Arm> struct CarefulSolve {
       int nearby = 0;
       const double* q = Row::row(found, k);
       for (int i = 0; i < k && Row::flag(found, k); ++i)
-        if (kept[i] && Row::flag(found, i) && RowPair<Arm>::within(Policy::kAlike, q, Row::row(found, i))) ++nearby;
+        if (kept[i] && Row::flag(found, i) && RowPair<Arm>::within(Policy::kNeighbouring, q, Row::row(found, i))) ++nearby;
       kept[k] = nearby < Policy::kCrowd;
       room -= Row::flag(found, k) ? 0 : 1;
     }

@@ -191,9 +191,9 @@ template <class Arm> struct RowStarts {
   // that they began with is lost, and the solution that one of them was near may lie far away.
   bool collapsed(const Start& one) const noexcept {
     if (SingularValue<Arm>::below(one.q, kContinuum)) return false;
-    const auto beside = [](const Start& s) noexcept { return Pair::within(Policy::kAlike, s.start, s.q); };
+    const auto beside = [](const Start& s) noexcept { return Pair::within(Policy::kNeighbouring, s.start, s.q); };
     return std::any_of(all.begin(), all.begin() + count, [&](const Start& other) noexcept {
-      return other.marked && Pair::within(Policy::kAlike, one.q, other.q) && !(beside(one) && beside(other));
+      return other.marked && Pair::within(Policy::kNeighbouring, one.q, other.q) && !(beside(one) && beside(other));
     });
   }
 
@@ -217,7 +217,7 @@ template <class Arm> struct RowStarts {
     Start& one = at(count) = start;
     one.judge();
     for (int k = 0; k < count && beside && one.nearby && !one.settled; ++k)
-      if (at(k).nearby && Pair::within(Policy::kAlike, one.q, at(k).q)) return;
+      if (at(k).nearby && Pair::within(Policy::kNeighbouring, one.q, at(k).q)) return;
     ++count;
     if (!one.settled) return;
     if (one.nearby || one.marked)

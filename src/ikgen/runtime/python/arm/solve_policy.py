@@ -17,7 +17,7 @@ class Policy:
     orthonormal: float  # how far a rotation's entries may be off by round-off
     level: float  # by how much a heading's squared length may be short of 1
     coincident: float  # rad or m: rows closer than that are one
-    alike: float  # rad or m: rows closer than that in every joint are neighbours
+    neighbouring: float  # rad or m: rows closer than that in every joint are neighbours
     halfway: float  # error up to which the pose is that of what is between two rows
     crowd: int  # neighbours on a continuum, at most
     limit_tolerance: float  # rad or m: a row no farther outside a limit is put back on it

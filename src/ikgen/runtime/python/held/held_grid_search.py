@@ -96,7 +96,7 @@ def _distinct(arm: Arm, rows: Array, order: Index) -> list[int]:
     out: list[int] = []
     for i in order.tolist():
         gaps = np.abs(differences(arm, rows[out], rows[i]))
-        if not (gaps < arm.policy.alike).all(axis=1).any():
+        if not (gaps < arm.policy.neighbouring).all(axis=1).any():
             out.append(i)
     return out
 

@@ -173,7 +173,7 @@ def _thinned(arm: Arm, rows: list[Found]) -> list[Found]:
     for row, singular in rows:
         others = [other for other, flag in kept if flag] if singular else []
         gaps = np.abs(differences(arm, np.array(row), np.array(others).reshape(-1, len(row))))
-        if (gaps.max(axis=1) < arm.policy.alike).sum() < arm.policy.crowd:
+        if (gaps.max(axis=1) < arm.policy.neighbouring).sum() < arm.policy.crowd:
             kept.append((row, singular))
     return kept
 

@@ -141,14 +141,16 @@ def _meetings(arm: Arm, at: Reduced, T: Array, group: Index, facing: bool) -> _M
     """Which samples of a `group` (n,) are by a step from each other on one curve, if `facing` in each
     other's way."""
     one, other = pairs_within(group)
+    gap = np.abs(differences(arm, at.q[one], at.q[other])[:, list(arm.moving)]).max(axis=1)
+    close = gap < _MEETING * arm.policy.try_step
+    one, other = one[close], other[close]
     a, b = some_of(at, one), some_of(at, other)
     turn = (a.still * b.still).sum(axis=1)
     sense = np.where(turn < 0.0, -1.0, 1.0)
     mean, _ = unit(a.still + sense[:, None] * b.still)
     a = a._replace(still=mean)
-    way, ahead, beside = _way(arm, a, b.q)
-    near = np.abs(way).max(axis=1) < _MEETING * arm.policy.try_step
-    near &= (beside < BESIDE) & ((-turn if facing else np.abs(turn)) > _FACING)
+    _, ahead, beside = _way(arm, a, b.q)
+    near = (beside < BESIDE) & ((-turn if facing else np.abs(turn)) > _FACING)
     a, one, other, ahead = some_of(a, near), one[near], other[near], ahead[near]
     if len(one):
         on, a = reached(arm, a, at.q[other], T[one])

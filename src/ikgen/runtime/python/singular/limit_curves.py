@@ -23,27 +23,21 @@ _WAY = 1.2  # of `policy.try_step`: by so much joints move from one sample to th
 
 
 def rows_along(
-    arm: Arm,
-    q: Array,
-    T: Array,
-    stands: Sequence[tuple[int, Row]],
-    others: Sequence[tuple[int, Row]] = (),
-) -> tuple[Index, Array, Flags]:
+    arm: Arm, q: Array, T: Array, stands: Sequence[tuple[int, Row]]
+) -> tuple[Index, Array]:
     """Rows (n, dof) inside the limits, whole turns aside, of the continua through solutions q (k, dof) of
-    aims T (k, ...), and whose they are (n,): one of each at most, none where a row on it stands for it; and
-    which `others` are on these continua too. `stands`, `others`: such rows of the aims."""
-    marks = [*stands, *others]
+    aims T (k, ...), and which of these they are of (n,): one of each continuum at most, none where a row on
+    it stands for it. `stands`: such rows, each of what a solution is of."""
     with np.errstate(all="ignore"):
         parts, _, same, worst = followed(arm, q, T)
         whole = np.bincount(parts.owner, minlength=len(q)) >= LEAST
         whole &= worst < arm.policy.arrived
-        whose = same[np.array([k for k, _ in marks], dtype=np.intp)]
-        on = whole[whose]
-        if on.any():
-            rows = np.array([row for (_, row), some in zip(marks, on) if some])
-            on[on] = on_curves(arm, parts, whose[on], rows, T)
-        stood = on[: len(stands)]
-        whole[whose[: len(stands)][stood]] = False
+        on_whole = ((int(same[k]), row) for k, row in stands if whole[same[k]])
+        marks = list(dict.fromkeys(on_whole))
+        if marks:
+            whose = np.array([k for k, _ in marks], dtype=np.intp)
+            on = on_curves(arm, parts, whose, np.array([row for _, row in marks]), T)
+            whole[whose[on]] = False
         parts = some_of(parts, whole[parts.owner])
         parts = some_of(parts, np.lexsort((parts.place, parts.owner)))
         parts = some_of(parts, _beside_least(arm, parts))
@@ -53,7 +47,7 @@ def rows_along(
     ends, error, _, _ = refined(arm, rows[order], T[parts.owner[order]])
     right = error < arm.policy.arrived
     owner, first = np.unique(parts.owner[order[right]], return_index=True)
-    return owner, ends[right][first], on[len(stands) :]
+    return owner, ends[right][first]
 
 
 def _beside_least(arm: Arm, parts: Parts) -> Flags:

@@ -129,8 +129,8 @@ def _collapsed(arm: Arm, starts: Starts, led: Ends) -> Flags:
     alone = (led.error < arm.policy.arrived) & (led.sigma > _CONTINUUM)
     some = alone[a] & alone[b]
     a, b = a[some], b[some]
-    same = np.abs(differences(arm, led.q[a], led.q[b])).max(axis=1) < arm.policy.alike
-    same &= np.maximum(way[a], way[b]) > arm.policy.alike  # not where two branches meet
+    same = np.abs(differences(arm, led.q[a], led.q[b])).max(axis=1) < arm.policy.neighbouring
+    same &= np.maximum(way[a], way[b]) > arm.policy.neighbouring  # not where two branches meet
     out = np.zeros(len(pose), dtype=bool)
     out[a[same]] = out[b[same]] = True
     return out
@@ -236,7 +236,9 @@ def _fresh(arm: Arm, q: Array, starts: Starts, near: Flags, stalled: Flags) -> F
     fresh[own] |= distinct(arm, rows, valid)[pose, place]
     for k in np.flatnonzero(fresh & beside & stalled).tolist():
         others = q[:k][(fresh & near & (starts.pose == starts.pose[k]))[:k]]
-        fresh[k] = not (np.abs(differences(arm, others, q[k])).max(axis=1) < arm.policy.alike).any()
+        fresh[k] = not (
+            np.abs(differences(arm, others, q[k])).max(axis=1) < arm.policy.neighbouring
+        ).any()
     return fresh
 
 
@@ -255,7 +257,7 @@ def _untold(arm: Arm, T: Array, a: Array, b: Array) -> Flags:
     """Which singular rows a (k, dof) towards aims T (k, ...) nothing tells from others nearby, b (k, dof):
     the pose is theirs between them too, on the straight way or on a curve beside that."""
     gaps = differences(arm, a, b)
-    near, out = np.abs(gaps).max(axis=1) < arm.policy.alike, np.zeros(len(a), dtype=bool)
+    near, out = np.abs(gaps).max(axis=1) < arm.policy.neighbouring, np.zeros(len(a), dtype=bool)
     if not near.any():
         return out
     middle, T = (a + 0.5 * gaps)[near], T[near]

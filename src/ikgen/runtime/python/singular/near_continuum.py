@@ -133,14 +133,17 @@ def followed(arm: Arm, q: Array, T: Array) -> Walked:
 def on_curves(arm: Arm, parts: Parts, owner: Index, q: Array, T: Array) -> Flags:
     """Which rows q (n, dof) lie on the curves of their starts `owner` (n,), towards aims T (k, ...)."""
     out, moving = np.zeros(len(q), dtype=bool), list(arm.moving)
-    row, part = np.nonzero(owner[:, None] == parts.owner)
-    parts = some_of(parts, part)
+    order = np.argsort(parts.owner, kind="stable")
+    begin, end = (np.searchsorted(parts.owner[order], owner, side=x) for x in ("left", "right"))
+    row = np.repeat(np.arange(len(q)), end - begin)
+    part = order[begin[row] + places(row)]
     chord = (parts.b.q - parts.a.q)[:, moving]
-    way = differences(arm, parts.a.q, q[row])[:, moving]
-    share = (way * chord).sum(axis=1) / (chord**2).sum(axis=1)
+    chord, size = chord[part], (chord**2).sum(axis=1)[part]
+    way = differences(arm, parts.a.q[part], q[row])[:, moving]
+    share = (way * chord).sum(axis=1) / size
     near = np.abs(way - share[:, None] * chord).max(axis=1) < BESIDE
     near &= (share > -_OVER) & (share < 1.0 + _OVER)
-    row, parts = row[near], some_of(parts, near)
+    row, parts = row[near], some_of(parts, part[near])
     on, _ = reached(arm, between(arm, parts, share[near], T), q[row], T[parts.owner])
     out[row[on]] = True
     return out

@@ -156,6 +156,6 @@ def _unlike(arm: Arm, q: Array, pose: Index) -> Index:
     for k, row in enumerate(q):
         others = [i for i in kept if pose[i] == pose[k]]
         gaps = np.abs(differences(arm, q[others], row)).max(axis=1)
-        if len(others) < _ROOM and not (gaps < arm.policy.alike).any():
+        if len(others) < _ROOM and not (gaps < arm.policy.neighbouring).any():
             kept.append(k)
     return np.array(kept, dtype=np.intp)

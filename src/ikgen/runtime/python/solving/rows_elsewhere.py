@@ -69,19 +69,14 @@ def take_along(arm: Arm, asked: Asked, limits: bool, out: list[Answer]) -> None:
     """Adds to answers rows inside the limits of the continua that rows outside are of, if none stands for
     them: on a curve through these, or else, as a surface has many, where steps from them lead."""
     beyond = [_outside(arm, one, asked.seed(i), limits) for i, one in enumerate(out)]
-    left = [list(rows) for rows in beyond]
-    while any(left):
-        some = [i for i, rows in enumerate(left) if rows]
-        q = np.array([left[i].pop(0) for i in some])
-        stands = [(k, row) for k, i in enumerate(some) for row, flag in out[i].rows if flag]
-        others = [(k, row) for k, i in enumerate(some) for row in left[i]]
-        aim = asked.aim(arm, np.array(some))
-        owner, rows, passed = rows_along(arm, q, aim, stands, others)
+    whose = [i for i, rows in enumerate(beyond) for _ in rows]
+    if whose:
+        q = np.array([row for rows in beyond for row in rows])
+        stands = [(k, row) for k, i in enumerate(whose) for row, flag in out[i].rows if flag]
+        owner, rows = rows_along(arm, q, asked.aim(arm, np.array(whose)), stands)
         for k, row in zip(owner.tolist(), rows.tolist()):
-            _add_inside(arm, asked, some[k], [(tuple(row), True)], limits, out)
-        for k, i in enumerate(some):
-            left[i] = [row for (of, row), on in zip(others, passed) if of == k and not on]
-    which = [i for i, rows in enumerate(beyond) for _ in rows if not out[i].stands]
+            _add_inside(arm, asked, whose[k], [(tuple(row), True)], limits, out)
+    which = [i for i in whose if not out[i].stands]
     if which:
         q = turned_inside(arm, np.array([row for i in dict.fromkeys(which) for row in beyond[i]]))
         lost = asked.at(np.array(which))
