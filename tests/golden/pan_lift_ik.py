@@ -2017,13 +2017,14 @@ _ROUNDS = 3
 
 class _Walked(NamedTuple):
     """The `parts` of curves that were passed, and the `ends` behind which too much is left, both under the
-    first start of a curve; which that is of each start, `same` (k,), and the most that is left on its
-    curve, `worst` (k,)."""
+    first start of a curve; which that is of each start, `same` (k,), the most that is left on its curve,
+    `worst` (k,), and how many of its parts lead to where a curve is near, `steps` (k,), under the first."""
 
     parts: _Parts
     ends: _Parts
     same: _Index
     worst: Array
+    steps: _Index
 
 
 class _Meetings(NamedTuple):
@@ -2054,6 +2055,7 @@ def _walked(arm: _Arm, first: _Reduced, T: Array, group: _Index) -> _Walked:
         ends.append(_some_of(passed, ~on & (left < _BEYOND * arm.policy.fold_reach)))
         on &= astray < _ASTRAY
         passed, astray = _some_of(passed, on), astray[on]
+        walks.steps[passed.owner[near[on]]] += 1
         going, bridges = walks.went_on(passed, (near & sure)[on], step)
         parts += [passed, bridges]
         before = passed.a.still[going]
@@ -2078,6 +2080,7 @@ class _Walks:
         self.T, self._group = np.concatenate([T, T]), np.concatenate([group, group])
         self.begun = np.flatnonzero(np.tile(self._same == np.arange(len(T)), 2))
         self.closed, self._worst = np.zeros(2 * len(T), dtype=bool), np.abs(self.origin.left)
+        self.steps = np.zeros(2 * len(T), dtype=np.intp)
 
     def went_on(self, passed: _Parts, sure: _Flags, step: int) -> tuple[_Flags, _Parts]:
         """Which walks (n,) go on behind the last parts (n,), and the parts between those that meet
@@ -2097,7 +2100,9 @@ class _Walks:
         going[met.one] = going[met.other] = False
         if step > _curve_walks_SETTLED + 1:
             going &= ~_back(arm, _some_of(self._settled, owner), c)
-        return going, _bridges(passed, met)
+        bridges = _bridges(passed, met)
+        np.add.at(self.steps, bridges.owner, 1)
+        return going, bridges
 
     def of_curves(self, parts: _Parts, ends: _Parts) -> _Walked:
         """What was passed to either side, by curves."""
@@ -2105,11 +2110,13 @@ class _Walks:
         once[self._count :] = ~self.closed[: self._count]
         worst = np.zeros(self._count)
         np.maximum.at(worst, np.tile(same, 2)[once], np.nan_to_num(self._worst[once]))
+        steps = np.zeros(self._count, dtype=np.intp)
+        np.add.at(steps, np.tile(same, 2)[once], self.steps[once])
         parts, ends = (_some_of(some, once[some.owner]) for some in (parts, ends))
         parts, ends = (
             some._replace(owner=same[some.owner % self._count]) for some in (parts, ends)
         )
-        return _Walked(parts, ends, same, worst[same])
+        return _Walked(parts, ends, same, worst[same], steps)
 
 
 def _ahead(arm: _Arm, b: _Reduced, before: Array) -> Array:
@@ -2246,7 +2253,7 @@ def _trace(arm: _Arm, q: Array, T: Array) -> _Traced:
 def _traced(arm: _Arm, q: Array, T: Array) -> tuple[_Index, _Flags, _Flags, _Index, Array]:
     """`_trace` of rows that differ, behind the first row (k,) on the curve of each."""
     curves = _followed(arm, q, T)
-    steps, broken = _kinds(arm, curves)
+    steps, broken = curves.steps, _broken(arm, curves)
     here, last = (_some_of(some, broken[some.owner]) for some in curves[:2])
     crossed = _some_of(curves.parts, (broken | (steps < _LEAST))[curves.parts.owner])
     crossings = _crossings_of(arm, crossed, T)
@@ -2265,13 +2272,9 @@ def _traced(arm: _Arm, q: Array, T: Array) -> tuple[_Index, _Flags, _Flags, _Ind
     return curves.same, steps >= _LEAST, broken, owner[order], found[order]
 
 
-def _kinds(arm: _Arm, curves: _Walked) -> tuple[_Index, _Flags]:
-    """How many samples there are of each curve (k,), and which are curves of the solved geometry that the
-    file's arm has not."""
-    steps = np.bincount(curves.parts.owner, minlength=len(curves.worst))
-    curve = steps >= _LEAST
-    broken = curve & (curves.worst >= arm.policy.arrived)
-    return steps, broken
+def _broken(arm: _Arm, curves: _Walked) -> _Flags:
+    """Which are curves of the solved geometry that the file's arm has not (k,)."""
+    return (curves.steps >= _LEAST) & (curves.worst >= arm.policy.arrived)
 
 
 def _crossing_parts(arm: _Arm, parts: _Parts, crossings: _Crossings, T: Array) -> _Parts:
@@ -2286,7 +2289,7 @@ def _crossing_parts(arm: _Arm, parts: _Parts, crossings: _Crossings, T: Array) -
     if not len(owner):
         return none
     curves = _walked(arm, first, T[owner], owner)
-    _, broken = _kinds(arm, curves)
+    broken = _broken(arm, curves)
     out: _Parts = _joined(*(_some_of(some, broken[some.owner]) for some in curves[:2]))
     return out._replace(owner=owner[out.owner])
 
@@ -2332,9 +2335,8 @@ def _rows_along(
     """Rows (n, dof) inside the limits, whole turns aside, of the continua through solutions q (k, dof) of
     aims T (k, ...), and which of these they are of (n,)."""
     with np.errstate(all="ignore"):
-        parts, _, same, worst = _followed(arm, q, T)
-        whole = np.bincount(parts.owner, minlength=len(q)) >= _LEAST
-        whole &= worst < arm.policy.arrived
+        parts, _, same, worst, steps = _followed(arm, q, T)
+        whole = (steps >= _LEAST) & (worst < arm.policy.arrived)
         on_whole = ((int(same[k]), row) for k, row in stands if whole[same[k]])
         marks = list(dict.fromkeys(on_whole))
         if marks:

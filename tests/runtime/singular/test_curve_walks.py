@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -9,16 +10,19 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from tests.support.cpp_modules import solver_module as published_module
+from tests.support.small_robots import write_robot
 from tests.support.solving import import_text
 
+from ikgen.derivation.derive import derive
 from ikgen.emit.python.python_emitter import emit_module
+from ikgen.records.request import Request
 from ikgen.runtime.python.arm.chain_kinematics import forward
 from ikgen.runtime.python.arrays.angles import WHOLE_TURN
 from ikgen.runtime.python.rows.solution_rows import pairs_within
 from ikgen.runtime.python.singular import curve_walks
 from ikgen.runtime.python.singular.curve_walks import _united, walked
 from ikgen.runtime.python.singular.fold_pair import Reduced
-from ikgen.runtime.python.singular.near_continuum import followed
+from ikgen.runtime.python.singular.near_continuum import LEAST, followed
 
 Array = NDArray[np.float64]
 STEP = np.pi / 8
@@ -42,9 +46,9 @@ def arm(tmp_path_factory: pytest.TempPathFactory) -> Any:
 def test_a_curve_is_passed_once_wherever_its_starts_lie(arm: Any, ways: list[float]) -> None:
     q = AT + np.outer(ways, TURN)
     T = np.repeat(forward(arm.chain, AT)[None], len(q), axis=0)
-    parts, ends, same, worst = followed(arm, q, T)
+    parts, ends, same, worst, steps = followed(arm, q, T)
     assert not same.any() and not parts.owner.any() and not len(ends.owner)
-    assert worst.max() < 1e-12
+    assert worst.max() < 1e-12 and len(parts.owner) - len(q) <= steps[0] <= len(parts.owner)
     low, high = np.sort([parts.a.q[:, 3], parts.b.q[:, 3]], axis=0)
     length = high - low
     assert length.max() < 1.1 * STEP and length.sum() < 2 * np.pi + (1 + len(q)) * STEP
@@ -86,7 +90,7 @@ def test_a_curve_beside_another_is_passed_too(
 ) -> None:
     monkeypatch.setattr(curve_walks, "sampled", lines(apart))
     first = samples((0.1, 0.0), (1.4, apart), (2.9, 0.0), (4.0, -apart))
-    parts, _, same, _ = walked(PLANE, first, np.zeros((4, 4, 4)), np.zeros(4, dtype=np.intp))
+    parts, _, same, *_ = walked(PLANE, first, np.zeros((4, 4, 4)), np.zeros(4, dtype=np.intp))
     assert same.tolist() == [0, 1, 0, 3]
     length = np.abs(parts.b.q[:, 0] - parts.a.q[:, 0])
     for owner in (0, 1, 3):
@@ -98,10 +102,21 @@ def test_a_walk_that_began_beside_its_curve_goes_round_once(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(curve_walks, "sampled", lines(0.5))
-    parts, _, _, _ = walked(
-        PLANE, samples((0.0, 0.2)), np.zeros((1, 4, 4)), np.zeros(1, dtype=np.intp)
-    )
+    parts, *_ = walked(PLANE, samples((0.0, 0.2)), np.zeros((1, 4, 4)), np.zeros(1, dtype=np.intp))
     assert 16 <= len(parts.owner) < 45
+
+
+def test_no_curve_is_where_nothing_is_near_one(tmp_path: Path) -> None:
+    """Positions beyond reach, on the axis about which all turns but for 1e-8: samples go on there, led by
+    the little that is left, and none is of a curve."""
+    request = Request(write_robot(tmp_path / "elbow.urdf"), task="position")
+    arm = import_text(emit_module(derive(request).module), tmp_path)._ARM
+    q = np.array([[-1.0, -2e-8, -np.pi / 2], [2.1, 2e-8, -np.pi / 2]])
+    T = forward(arm.chain, q)
+    T[:, 2, 3] += 0.02
+    curves = followed(arm, q, T)
+    assert np.bincount(curves.parts.owner).min() >= LEAST > curves.steps.max()
+    assert followed(arm, q, forward(arm.chain, q)).steps.min() >= 8
 
 
 def test_pairs_are_those_of_one_group() -> None:

@@ -179,7 +179,7 @@ def test_solutions_in_the_last_part_of_a_curve_are_found(
     arm: Any = SimpleNamespace(**vars(LINE) | {"policy": SimpleNamespace(**vars(POLICY))})
     arm.policy.fold_reach = reach
     T, first = np.zeros((1, 4, 4)), at(0.35, 1.0)
-    parts, ends, _, worst = walked(arm, steep(arm, first, T), T, np.zeros(1, dtype=np.intp))
+    parts, ends, _, worst, _ = walked(arm, steep(arm, first, T), T, np.zeros(1, dtype=np.intp))
     assert not len(parts.owner) and worst == pytest.approx([0.2])
     owner, found = look(arm, ends, T, np.zeros(1, np.intp))
     assert not owner.any()

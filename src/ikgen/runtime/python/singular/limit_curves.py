@@ -29,9 +29,8 @@ def rows_along(
     aims T (k, ...), and which of these they are of (n,): one of each continuum at most, none where a row on
     it stands for it. `stands`: such rows, each of what a solution is of."""
     with np.errstate(all="ignore"):
-        parts, _, same, worst = followed(arm, q, T)
-        whole = np.bincount(parts.owner, minlength=len(q)) >= LEAST
-        whole &= worst < arm.policy.arrived
+        parts, _, same, worst, steps = followed(arm, q, T)
+        whole = (steps >= LEAST) & (worst < arm.policy.arrived)
         on_whole = ((int(same[k]), row) for k, row in stands if whole[same[k]])
         marks = list(dict.fromkeys(on_whole))
         if marks:

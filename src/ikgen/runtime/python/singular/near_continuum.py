@@ -78,7 +78,7 @@ def trace(arm: Arm, q: Array, T: Array) -> Traced:
 def _traced(arm: Arm, q: Array, T: Array) -> tuple[Index, Flags, Flags, Index, Array]:
     """`trace` of rows that differ, behind the first row (k,) on the curve of each."""
     curves = followed(arm, q, T)
-    steps, broken = _kinds(arm, curves)
+    steps, broken = curves.steps, _broken(arm, curves)
     here, last = (some_of(some, broken[some.owner]) for some in curves[:2])
     crossed = some_of(curves.parts, (broken | (steps < LEAST))[curves.parts.owner])
     crossings = crossings_of(arm, crossed, T)
@@ -97,13 +97,9 @@ def _traced(arm: Arm, q: Array, T: Array) -> tuple[Index, Flags, Flags, Index, A
     return curves.same, steps >= LEAST, broken, owner[order], found[order]
 
 
-def _kinds(arm: Arm, curves: Walked) -> tuple[Index, Flags]:
-    """How many samples there are of each curve (k,), and which are curves of the solved geometry that the
-    file's arm has not."""
-    steps = np.bincount(curves.parts.owner, minlength=len(curves.worst))
-    curve = steps >= LEAST
-    broken = curve & (curves.worst >= arm.policy.arrived)
-    return steps, broken
+def _broken(arm: Arm, curves: Walked) -> Flags:
+    """Which are curves of the solved geometry that the file's arm has not (k,)."""
+    return (curves.steps >= LEAST) & (curves.worst >= arm.policy.arrived)
 
 
 def _crossing_parts(arm: Arm, parts: Parts, crossings: Crossings, T: Array) -> Parts:
@@ -118,7 +114,7 @@ def _crossing_parts(arm: Arm, parts: Parts, crossings: Crossings, T: Array) -> P
     if not len(owner):
         return none
     curves = walked(arm, first, T[owner], owner)
-    _, broken = _kinds(arm, curves)
+    broken = _broken(arm, curves)
     out: Parts = joined(*(some_of(some, broken[some.owner]) for some in curves[:2]))
     return out._replace(owner=owner[out.owner])
 
