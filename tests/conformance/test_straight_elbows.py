@@ -62,4 +62,4 @@ def test_an_arm_that_is_straight_from_shoulder_to_wrist_is_answered(tmp_path: Pa
     q[:, 4] = 0.0
     poses = arm.forward(q)
     assert set(header.solve_many(poses).status) == {"OK"}
-    assert all(arm.solve(pose).status == "OK" for pose in poses[:100])
+    assert all(arm.solve(pose).status == "OK" for pose in poses[:40])
