@@ -126,12 +126,29 @@ def test_joints_that_follow_others_are_named(
     assert "; ".join(json.loads(capsys.readouterr().out)["coupled"]) == words
 
 
+def test_joints_that_the_file_lets_follow_are_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    robot = write_robot(tmp_path / "elbow.urdf")
+    text = robot.read_text()
+    place = text.index("</joint>", text.index('<joint name="elbow"'))
+    mimic = '<mimic joint="shoulder" multiplier="-1" offset="0.5"/>'
+    robot.write_text(text[:place] + mimic + text[place:])
+    command = ["from-urdf", str(robot), "-o", str(tmp_path), "--no-verify"]
+    assert run(command) == 0
+    said = capsys.readouterr().out
+    (line,) = (x for x in said.splitlines() if x.startswith("follow:"))
+    assert line.removeprefix("follow:").strip() == "elbow=shoulder*-1+0.5 (as in the file)"
+    assert not any(line.startswith("coupled:") for line in said.splitlines())
+
+
 def test_an_arm_whose_joints_follow_none_has_no_such_line(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "arm.urdf").write_text(serial_urdf("arm", SHOULDER_ELBOW_WRIST))
     assert run(["from-urdf", str(tmp_path / "arm.urdf"), "-o", str(tmp_path), "--no-verify"]) == 0
-    assert "coupled:" not in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert "coupled:" not in said and "follow:" not in said
 
 
 def test_what_a_manifest_lacks_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
