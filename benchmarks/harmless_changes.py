@@ -68,7 +68,7 @@ HARMLESS = (
     ),
     HarmlessChange(
         "runtime/python/singular/near_continuum.py",
-        "broken = curve & (curves.worst >= arm.policy.arrived)",
+        "return curve & (curves.worst >= arm.policy.arrived)",
         ">=", ">", _EQUAL,
     ),
     HarmlessChange(

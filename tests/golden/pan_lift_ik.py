@@ -2017,8 +2017,8 @@ _ROUNDS = 3
 
 class _Walked(NamedTuple):
     """The `parts` of curves that were passed, and the `ends` behind which too much is left, both under the
-    first start of a curve; which that is of each start, `same` (k,), the most that is left on its curve,
-    `worst` (k,), and how many of its parts lead to where a curve is near, `steps` (k,), under the first."""
+    first start of a curve; of each start which that is, `same`, and the most that is left, `worst` (k,);
+    of the first ones how many parts end near a curve, `steps` (k,)."""
 
     parts: _Parts
     ends: _Parts
@@ -2042,7 +2042,7 @@ def _walked(arm: _Arm, first: _Reduced, T: Array, group: _Index) -> _Walked:
     `policy.try_step` from one to the next, until two of a `group` (k,) meet on a curve, or one comes back
     to where it was."""
     walks = _Walks(arm, first, T, group)
-    parts, ends, owner, T = [], [], walks.begun, walks.T
+    parts, known, ends, owner, T = [], [], [], walks.begun, walks.T
     b = _some_of(walks.origin, owner)
     astray, before = np.zeros(len(owner), dtype=np.intp), b.still
     for step in range(_curve_walks_MOST):
@@ -2055,15 +2055,15 @@ def _walked(arm: _Arm, first: _Reduced, T: Array, group: _Index) -> _Walked:
         ends.append(_some_of(passed, ~on & (left < _BEYOND * arm.policy.fold_reach)))
         on &= astray < _ASTRAY
         passed, astray = _some_of(passed, on), astray[on]
-        walks.steps[passed.owner[near[on]]] += 1
         going, bridges = walks.went_on(passed, (near & sure)[on], step)
         parts += [passed, bridges]
+        known += [near[on], np.ones(len(bridges.owner), dtype=bool)]
         before = passed.a.still[going]
         b, owner, astray = _some_of(passed.b, going), passed.owner[going], astray[going]
         if not len(owner):
             break
     walks.closed[owner] = True
-    return walks.of_curves(_joined(*parts), _joined(*ends))
+    return walks.of_curves(_joined(*parts), _joined(*ends), np.concatenate(known))
 
 
 class _Walks:
@@ -2080,7 +2080,6 @@ class _Walks:
         self.T, self._group = np.concatenate([T, T]), np.concatenate([group, group])
         self.begun = np.flatnonzero(np.tile(self._same == np.arange(len(T)), 2))
         self.closed, self._worst = np.zeros(2 * len(T), dtype=bool), np.abs(self.origin.left)
-        self.steps = np.zeros(2 * len(T), dtype=np.intp)
 
     def went_on(self, passed: _Parts, sure: _Flags, step: int) -> tuple[_Flags, _Parts]:
         """Which walks (n,) go on behind the last parts (n,), and the parts between those that meet
@@ -2100,22 +2099,20 @@ class _Walks:
         going[met.one] = going[met.other] = False
         if step > _curve_walks_SETTLED + 1:
             going &= ~_back(arm, _some_of(self._settled, owner), c)
-        bridges = _bridges(passed, met)
-        np.add.at(self.steps, bridges.owner, 1)
-        return going, bridges
+        return going, _bridges(passed, met)
 
-    def of_curves(self, parts: _Parts, ends: _Parts) -> _Walked:
-        """What was passed to either side, by curves."""
+    def of_curves(self, parts: _Parts, ends: _Parts, near: _Flags) -> _Walked:
+        """What was passed to either side, to the other only where the one did not come back."""
         same, once = self._same, np.ones(2 * self._count, dtype=bool)
         once[self._count :] = ~self.closed[: self._count]
         worst = np.zeros(self._count)
         np.maximum.at(worst, np.tile(same, 2)[once], np.nan_to_num(self._worst[once]))
-        steps = np.zeros(self._count, dtype=np.intp)
-        np.add.at(steps, np.tile(same, 2)[once], self.steps[once])
+        near = near[once[parts.owner]]
         parts, ends = (_some_of(some, once[some.owner]) for some in (parts, ends))
         parts, ends = (
             some._replace(owner=same[some.owner % self._count]) for some in (parts, ends)
         )
+        steps = np.bincount(parts.owner[near], minlength=self._count)
         return _Walked(parts, ends, same, worst[same], steps)
 
 
@@ -2245,9 +2242,15 @@ def _trace(arm: _Arm, q: Array, T: Array) -> _Traced:
     again = again.reshape(-1)
     same, curve, broken, owner, rows = _traced(arm, q[first], T[first])
     again = same[again]
-    begin, end = np.searchsorted(owner, again), np.searchsorted(owner, again, side="right")
-    whose = np.repeat(np.arange(len(q)), end - begin)
-    return _Traced(curve[again], broken[again], whose, rows[begin[whose] + _places(whose)])
+    whose, member = _members(owner, again)
+    return _Traced(curve[again], broken[again], whose, rows[member])
+
+
+def _members(group: _Index, asked: _Index) -> tuple[_Index, _Index]:
+    """Which in `group` (k,), in order, are of those asked for (n,), and of which."""
+    begin, end = np.searchsorted(group, asked), np.searchsorted(group, asked, side="right")
+    whose = np.repeat(np.arange(len(asked)), end - begin)
+    return whose, begin[whose] + _places(whose)
 
 
 def _traced(arm: _Arm, q: Array, T: Array) -> tuple[_Index, _Flags, _Flags, _Index, Array]:
@@ -2274,7 +2277,8 @@ def _traced(arm: _Arm, q: Array, T: Array) -> tuple[_Index, _Flags, _Flags, _Ind
 
 def _broken(arm: _Arm, curves: _Walked) -> _Flags:
     """Which are curves of the solved geometry that the file's arm has not (k,)."""
-    return (curves.steps >= _LEAST) & (curves.worst >= arm.policy.arrived)
+    curve = curves.steps >= _LEAST
+    return curve & (curves.worst >= arm.policy.arrived)
 
 
 def _crossing_parts(arm: _Arm, parts: _Parts, crossings: _Crossings, T: Array) -> _Parts:
@@ -2305,13 +2309,11 @@ def _on_curves(arm: _Arm, parts: _Parts, owner: _Index, q: Array, T: Array) -> _
     """Which rows q (n, dof) lie on the curves of their starts `owner` (n,), towards aims T (k, ...)."""
     out, moving = np.zeros(len(q), dtype=bool), list(arm.moving)
     order = np.argsort(parts.owner, kind="stable")
-    begin, end = (np.searchsorted(parts.owner[order], owner, side=x) for x in ("left", "right"))
-    row = np.repeat(np.arange(len(q)), end - begin)
-    part = order[begin[row] + _places(row)]
-    chord = (parts.b.q - parts.a.q)[:, moving]
-    chord, size = chord[part], (chord**2).sum(axis=1)[part]
+    row, part = _members(parts.owner[order], owner)
+    part = order[part]
+    chord = (parts.b.q - parts.a.q)[part][:, moving]
     way = _differences(arm, parts.a.q[part], q[row])[:, moving]
-    share = (way * chord).sum(axis=1) / size
+    share = (way * chord).sum(axis=1) / (chord**2).sum(axis=1)
     near = np.abs(way - share[:, None] * chord).max(axis=1) < _curve_walks_BESIDE
     near &= (share > -_OVER) & (share < 1.0 + _OVER)
     row, parts = row[near], _some_of(parts, part[near])
@@ -2333,12 +2335,11 @@ def _rows_along(
     arm: _Arm, q: Array, T: Array, stands: Sequence[tuple[int, Row]]
 ) -> tuple[_Index, Array]:
     """Rows (n, dof) inside the limits, whole turns aside, of the continua through solutions q (k, dof) of
-    aims T (k, ...), and which of these they are of (n,)."""
+    aims T (k, ...), and whose they are (n,)."""
     with np.errstate(all="ignore"):
         parts, _, same, worst, steps = _followed(arm, q, T)
         whole = (steps >= _LEAST) & (worst < arm.policy.arrived)
-        on_whole = ((int(same[k]), row) for k, row in stands if whole[same[k]])
-        marks = list(dict.fromkeys(on_whole))
+        marks = list(dict.fromkeys((int(same[k]), row) for k, row in stands if whole[same[k]]))
         if marks:
             whose = np.array([k for k, _ in marks], dtype=np.intp)
             on = _on_curves(arm, parts, whose, np.array([row for _, row in marks]), T)
@@ -2643,19 +2644,19 @@ def _take_nearest(arm: _Arm, asked: _Asked, some: _Index, limits: bool, out: lis
 def _take_along(arm: _Arm, asked: _Asked, limits: bool, out: list[_Answer]) -> None:
     """Adds to answers rows inside the limits of the continua that rows outside are of, if none stands for
     them."""
-    beyond = [_outside(arm, one, asked.seed(i), limits) for i, one in enumerate(out)]
-    whose = [i for i, rows in enumerate(beyond) for _ in rows]
-    if whose:
-        q = np.array([row for rows in beyond for row in rows])
-        stands = [(k, row) for k, i in enumerate(whose) for row, flag in out[i].rows if flag]
-        owner, rows = _rows_along(arm, q, asked.aim(arm, np.array(whose)), stands)
-        for k, row in zip(owner.tolist(), rows.tolist()):
-            _add_inside(arm, asked, whose[k], [(tuple(row), True)], limits, out)
-    which = [i for i in whose if not out[i].stands]
-    if which:
-        q = _turned_inside(arm, np.array([row for i in dict.fromkeys(which) for row in beyond[i]]))
-        lost = asked.at(np.array(which))
-        for i, found in zip(which, _led_to_or_along(arm, lost, _descended(arm, lost.T, q, limits))):
+    outside = [_outside(arm, one, asked.seed(i), limits) for i, one in enumerate(out)]
+    beyond = [(i, row) for i, rows in enumerate(outside) for row in rows]
+    if not beyond:
+        return
+    whose, q = np.array([i for i, _ in beyond]), np.array([row for _, row in beyond])
+    stands = [(k, row) for k, i in enumerate(whose) for row, flag in out[i].rows if flag]
+    for k, row in zip(*_rows_along(arm, q, asked.aim(arm, whose), stands)):
+        _add_inside(arm, asked, whose[k], [(tuple(row.tolist()), True)], limits, out)
+    lost = np.array([not out[i].stands for i in whose])
+    if lost.any():
+        some = asked.at(whose[lost])
+        rows = _descended(arm, some.T, _turned_inside(arm, q[lost]), limits)
+        for i, found in zip(whose[lost], _led_to_or_along(arm, some, rows)):
             if not out[i].stands:
                 _add_inside(arm, asked, i, found, limits, out)
 

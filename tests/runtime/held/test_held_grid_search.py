@@ -130,6 +130,6 @@ def test_rows_outside_are_no_starts() -> None:
 
 def test_what_ends_at_the_same_row_is_taken_once() -> None:
     one = arm("RP", (-1.0, -1.0), (1.0, 1.0))
-    one.policy = SimpleNamespace(alike=1e-2)
+    one.policy = SimpleNamespace(neighbouring=1e-2)
     rows = np.array([[0.1, 0.0], [0.1 + 2.0 * pi, 0.005], [0.1, 2.0 * pi], [0.12, 0.0]])
     assert _distinct(one, rows, np.array([1, 0, 2, 3])) == [1, 2, 3]

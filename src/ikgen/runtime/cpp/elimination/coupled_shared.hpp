@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "elimination/coupled_run.hpp"
+#include "elimination/general_6r_pairs.hpp"
 #include "elimination/six_joint_arm.hpp"
 #include "elimination/unit_circle_roots.hpp"
 

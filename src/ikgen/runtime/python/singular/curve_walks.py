@@ -33,8 +33,8 @@ _ROUNDS = 3
 
 class Walked(NamedTuple):
     """The `parts` of curves that were passed, and the `ends` behind which too much is left, both under the
-    first start of a curve; which that is of each start, `same` (k,), the most that is left on its curve,
-    `worst` (k,), and how many of its parts lead to where a curve is near, `steps` (k,), under the first."""
+    first start of a curve; of each start which that is, `same`, and the most that is left, `worst` (k,);
+    of the first ones how many parts end near a curve, `steps` (k,)."""
 
     parts: Parts
     ends: Parts
@@ -58,7 +58,7 @@ def walked(arm: Arm, first: Reduced, T: Array, group: Index) -> Walked:
     `policy.try_step` from one to the next, until two of a `group` (k,) meet on a curve, or one comes back
     to where it was."""
     walks = _Walks(arm, first, T, group)
-    parts, ends, owner, T = [], [], walks.begun, walks.T
+    parts, known, ends, owner, T = [], [], [], walks.begun, walks.T
     b = some_of(walks.origin, owner)
     astray, before = np.zeros(len(owner), dtype=np.intp), b.still
     for step in range(_MOST):
@@ -71,22 +71,21 @@ def walked(arm: Arm, first: Reduced, T: Array, group: Index) -> Walked:
         ends.append(some_of(passed, ~on & (left < BEYOND * arm.policy.fold_reach)))
         on &= astray < _ASTRAY
         passed, astray = some_of(passed, on), astray[on]
-        walks.steps[passed.owner[near[on]]] += 1
         going, bridges = walks.went_on(passed, (near & sure)[on], step)
         parts += [passed, bridges]
+        known += [near[on], np.ones(len(bridges.owner), dtype=bool)]
         before = passed.a.still[going]
         b, owner, astray = some_of(passed.b, going), passed.owner[going], astray[going]
         if not len(owner):
             break
     walks.closed[owner] = True
-    return walks.of_curves(joined(*parts), joined(*ends))
+    return walks.of_curves(joined(*parts), joined(*ends), np.concatenate(known))
 
 
 class _Walks:
     """From `origin` samples (2 k,) towards aims `T`, to one side and the other of all starts (k,); the
     numbers of those that have `begun`: of starts near each other on one curve the first alone. `closed`
-    (2 k,): which are back where they began; `steps` (2 k,): their parts that lead to where a curve is near.
-    """
+    (2 k,): which are back where they began."""
 
     def __init__(self, arm: Arm, first: Reduced, T: Array, group: Index) -> None:
         self._arm, self._count = arm, len(T)
@@ -98,7 +97,6 @@ class _Walks:
         self.T, self._group = np.concatenate([T, T]), np.concatenate([group, group])
         self.begun = np.flatnonzero(np.tile(self._same == np.arange(len(T)), 2))
         self.closed, self._worst = np.zeros(2 * len(T), dtype=bool), np.abs(self.origin.left)
-        self.steps = np.zeros(2 * len(T), dtype=np.intp)
 
     def went_on(self, passed: Parts, sure: Flags, step: int) -> tuple[Flags, Parts]:
         """Which walks (n,) go on behind the last parts (n,), and the parts between those that meet there;
@@ -118,22 +116,21 @@ class _Walks:
         going[met.one] = going[met.other] = False
         if step > _SETTLED + 1:
             going &= ~_back(arm, some_of(self._settled, owner), c)
-        bridges = _bridges(passed, met)
-        np.add.at(self.steps, bridges.owner, 1)
-        return going, bridges
+        return going, _bridges(passed, met)
 
-    def of_curves(self, parts: Parts, ends: Parts) -> Walked:
-        """What was passed to either side, by curves: to the other only where the one did not come back."""
+    def of_curves(self, parts: Parts, ends: Parts, near: Flags) -> Walked:
+        """What was passed to either side, to the other only where the one did not come back. `near` (n,):
+        which parts end near a curve."""
         same, once = self._same, np.ones(2 * self._count, dtype=bool)
         once[self._count :] = ~self.closed[: self._count]
         worst = np.zeros(self._count)
         np.maximum.at(worst, np.tile(same, 2)[once], np.nan_to_num(self._worst[once]))
-        steps = np.zeros(self._count, dtype=np.intp)
-        np.add.at(steps, np.tile(same, 2)[once], self.steps[once])
+        near = near[once[parts.owner]]
         parts, ends = (some_of(some, once[some.owner]) for some in (parts, ends))
         parts, ends = (
             some._replace(owner=same[some.owner % self._count]) for some in (parts, ends)
         )
+        steps = np.bincount(parts.owner[near], minlength=self._count)
         return Walked(parts, ends, same, worst[same], steps)
 
 

@@ -26,13 +26,12 @@ def rows_along(
     arm: Arm, q: Array, T: Array, stands: Sequence[tuple[int, Row]]
 ) -> tuple[Index, Array]:
     """Rows (n, dof) inside the limits, whole turns aside, of the continua through solutions q (k, dof) of
-    aims T (k, ...), and which of these they are of (n,): one of each continuum at most, none where a row on
-    it stands for it. `stands`: such rows, each of what a solution is of."""
+    aims T (k, ...), and whose they are (n,): one of each at most, none where a row on it stands for it.
+    `stands`: such rows, each with a solution of its pose."""
     with np.errstate(all="ignore"):
         parts, _, same, worst, steps = followed(arm, q, T)
         whole = (steps >= LEAST) & (worst < arm.policy.arrived)
-        on_whole = ((int(same[k]), row) for k, row in stands if whole[same[k]])
-        marks = list(dict.fromkeys(on_whole))
+        marks = list(dict.fromkeys((int(same[k]), row) for k, row in stands if whole[same[k]]))
         if marks:
             whose = np.array([k for k, _ in marks], dtype=np.intp)
             on = on_curves(arm, parts, whose, np.array([row for _, row in marks]), T)

@@ -70,9 +70,15 @@ def trace(arm: Arm, q: Array, T: Array) -> Traced:
     again = again.reshape(-1)
     same, curve, broken, owner, rows = _traced(arm, q[first], T[first])
     again = same[again]
-    begin, end = np.searchsorted(owner, again), np.searchsorted(owner, again, side="right")
-    whose = np.repeat(np.arange(len(q)), end - begin)
-    return Traced(curve[again], broken[again], whose, rows[begin[whose] + places(whose)])
+    whose, member = _members(owner, again)
+    return Traced(curve[again], broken[again], whose, rows[member])
+
+
+def _members(group: Index, asked: Index) -> tuple[Index, Index]:
+    """Which in `group` (k,), in order, are of those asked for (n,), and of which."""
+    begin, end = np.searchsorted(group, asked), np.searchsorted(group, asked, side="right")
+    whose = np.repeat(np.arange(len(asked)), end - begin)
+    return whose, begin[whose] + places(whose)
 
 
 def _traced(arm: Arm, q: Array, T: Array) -> tuple[Index, Flags, Flags, Index, Array]:
@@ -99,7 +105,8 @@ def _traced(arm: Arm, q: Array, T: Array) -> tuple[Index, Flags, Flags, Index, A
 
 def _broken(arm: Arm, curves: Walked) -> Flags:
     """Which are curves of the solved geometry that the file's arm has not (k,)."""
-    return (curves.steps >= LEAST) & (curves.worst >= arm.policy.arrived)
+    curve = curves.steps >= LEAST
+    return curve & (curves.worst >= arm.policy.arrived)
 
 
 def _crossing_parts(arm: Arm, parts: Parts, crossings: Crossings, T: Array) -> Parts:
@@ -130,13 +137,11 @@ def on_curves(arm: Arm, parts: Parts, owner: Index, q: Array, T: Array) -> Flags
     """Which rows q (n, dof) lie on the curves of their starts `owner` (n,), towards aims T (k, ...)."""
     out, moving = np.zeros(len(q), dtype=bool), list(arm.moving)
     order = np.argsort(parts.owner, kind="stable")
-    begin, end = (np.searchsorted(parts.owner[order], owner, side=x) for x in ("left", "right"))
-    row = np.repeat(np.arange(len(q)), end - begin)
-    part = order[begin[row] + places(row)]
-    chord = (parts.b.q - parts.a.q)[:, moving]
-    chord, size = chord[part], (chord**2).sum(axis=1)[part]
+    row, part = _members(parts.owner[order], owner)
+    part = order[part]
+    chord = (parts.b.q - parts.a.q)[part][:, moving]
     way = differences(arm, parts.a.q[part], q[row])[:, moving]
-    share = (way * chord).sum(axis=1) / size
+    share = (way * chord).sum(axis=1) / (chord**2).sum(axis=1)
     near = np.abs(way - share[:, None] * chord).max(axis=1) < BESIDE
     near &= (share > -_OVER) & (share < 1.0 + _OVER)
     row, parts = row[near], some_of(parts, part[near])

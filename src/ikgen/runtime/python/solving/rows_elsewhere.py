@@ -68,19 +68,19 @@ def take_nearest(arm: Arm, asked: Asked, some: Index, limits: bool, out: list[An
 def take_along(arm: Arm, asked: Asked, limits: bool, out: list[Answer]) -> None:
     """Adds to answers rows inside the limits of the continua that rows outside are of, if none stands for
     them: on a curve through these, or else, as a surface has many, where steps from them lead."""
-    beyond = [_outside(arm, one, asked.seed(i), limits) for i, one in enumerate(out)]
-    whose = [i for i, rows in enumerate(beyond) for _ in rows]
-    if whose:
-        q = np.array([row for rows in beyond for row in rows])
-        stands = [(k, row) for k, i in enumerate(whose) for row, flag in out[i].rows if flag]
-        owner, rows = rows_along(arm, q, asked.aim(arm, np.array(whose)), stands)
-        for k, row in zip(owner.tolist(), rows.tolist()):
-            _add_inside(arm, asked, whose[k], [(tuple(row), True)], limits, out)
-    which = [i for i in whose if not out[i].stands]
-    if which:
-        q = turned_inside(arm, np.array([row for i in dict.fromkeys(which) for row in beyond[i]]))
-        lost = asked.at(np.array(which))
-        for i, found in zip(which, _led_to_or_along(arm, lost, descended(arm, lost.T, q, limits))):
+    outside = [_outside(arm, one, asked.seed(i), limits) for i, one in enumerate(out)]
+    beyond = [(i, row) for i, rows in enumerate(outside) for row in rows]
+    if not beyond:
+        return
+    whose, q = np.array([i for i, _ in beyond]), np.array([row for _, row in beyond])
+    stands = [(k, row) for k, i in enumerate(whose) for row, flag in out[i].rows if flag]
+    for k, row in zip(*rows_along(arm, q, asked.aim(arm, whose), stands)):
+        _add_inside(arm, asked, whose[k], [(tuple(row.tolist()), True)], limits, out)
+    lost = np.array([not out[i].stands for i in whose])
+    if lost.any():
+        some = asked.at(whose[lost])
+        rows = descended(arm, some.T, turned_inside(arm, q[lost]), limits)
+        for i, found in zip(whose[lost], _led_to_or_along(arm, some, rows)):
             if not out[i].stands:
                 _add_inside(arm, asked, i, found, limits, out)
 
