@@ -147,6 +147,8 @@ def test_one_bad_record_leaves_the_others(
     cases = [(case.classname, case.name) for suite in suites for case in suite]
     assert len(cases) == len(set(cases))
     assert {"broken/arm.outputs", "orphan/arm.outputs", "out/arm.outputs"} <= {c for c, _ in cases}
+    assert ("out/arm.outputs", "arm_ik.py up to date") in cases
+    assert ("broken/arm.outputs", "arm_ik.json up to date") in cases
 
 
 NO_TABLES = ("[]", "[1]", "null", "7", '"text"')
@@ -203,7 +205,11 @@ def test_a_header_that_does_not_compile(project: Path, capsys: pytest.CaptureFix
     said = capsys.readouterr()
     assert "error: header/arm_ik.hpp: the emitted header does not compile" in said.err
     assert "arm: WRONG" in said.out and "arm: right (python" in said.out
-    assert junitparser.JUnitXml.fromfile("j.xml").failures == 2  # edited, and does not compile
+    suites = junitparser.JUnitXml.fromfile("j.xml")
+    (failed,) = (case for suite in suites for case in suite if case.is_failure)
+    assert failed.name == "arm_ik.hpp up to date"
+    assert "was edited after" in failed.result[0].message
+    assert "the emitted header does not compile" in failed.result[0].message
 
 
 def test_no_compiler_is_not_the_header_s_fault(

@@ -3059,7 +3059,7 @@ def _pose_fault(task: _EntriesTask, T: list[list[float]], policy: _Policy) -> st
     off = (sqrt(1.0 + defect) - 1.0) / sqrt(3.0 * len(columns))
     text = f"the pose's rotation is off by {off:.1e}, more than {policy.pose_tolerance:.0e}"
     if task.read(T, replace(policy, pose_tolerance=_PRINTED)) is None:
-        return f"{text} (a quaternion is to have norm 1)"
+        return f"{text}, and than the {_PRINTED:.0e} of orthonormalize (norm 1 of a quaternion?)"
     return f"{text}: solve(pose, orthonormalize=True) takes the nearest one"
 
 

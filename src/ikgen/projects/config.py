@@ -152,7 +152,9 @@ def _tables(path: Path, text: str) -> dict[str, Any]:
     except ValueError as error:
         place = re.search(r"line (\d+)", str(error))
         line = int(place.group(1)) if place else text.count("\n") + 1  # at the end
-        hint = "name an ikgen.toml, a pyproject.toml, or the folder that holds the outputs"
+        hint = (
+            "correct it there, or name another file: an ikgen.toml, a pyproject.toml, or a folder"
+        )
         raise _error(path, f"not TOML: {error}", line=line, hint=conflict_or(text, hint)) from None
     if path.name != PYPROJECT:
         return data

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from ikgen.processes.executors import Workers
+    from ikgen.verify.verification_report import CheckResult
 
 __all__ = ["recheck_all", "write_junit"]
 
@@ -110,21 +111,39 @@ def write_junit(path: Path, results: Sequence[Recheck]) -> None:
     """JUnit XML: one suite an output; findings that no verification holds become a suite of their own.
     Where outputs share a name their folders tell them apart."""
     from ikgen.verify.junit import write_junit_xml
-    from ikgen.verify.verification_report import CheckResult, VerificationReport
+    from ikgen.verify.verification_report import VerificationReport
 
     suites = []
     times = Counter(result.name for result in results)
     for result in results:
-        record = result.record
         apart = times[result.name] > 1
         name = (result.path.parent / result.name).as_posix() if apart else result.name
-        checks = tuple(
-            CheckResult("up to date", False, 1, 1, detail=f.message, worst_case=f.remedy)
-            for f in result.findings
-        ) or (CheckResult("up to date", True, len(record.files) if record else 0),)
-        request = record.request if record else None
+        request = result.record.request if result.record else None
         base, tip, task = (request.base, request.tip, request.task) if request else ("", "", "")
+        checks = _files_checked(result)
         own = VerificationReport("outputs", base or "", tip or "", task or "", 0, 0, checks)
         suites += [(name, report) for report in (own, *result.reports.values())]
     path.parent.mkdir(parents=True, exist_ok=True)
     write_junit_xml(path, suites)
+
+
+def _files_checked(result: Recheck) -> tuple[CheckResult, ...]:
+    """Whether each recorded file is right, and others that findings are of: the record itself, say."""
+    from ikgen.verify.verification_report import CheckResult
+
+    wrong: dict[str, list[Finding]] = {}
+    for finding in result.findings:
+        place = Path(os.path.relpath(finding.file, result.path.parent)).as_posix()
+        wrong.setdefault(place, []).append(finding)
+    files = result.record.files if result.record else ()
+    checks = []
+    for name in dict.fromkeys((*files, *wrong)):
+        found = wrong.get(name, [])
+        detail, remedies = "; ".join(f.message for f in found), "\n".join(f.remedy for f in found)
+        passed, count = not found, max(1, len(found))
+        checks.append(
+            CheckResult(
+                f"{name} up to date", passed, count, len(found), detail=detail, worst_case=remedies
+            )
+        )
+    return tuple(checks)

@@ -140,7 +140,7 @@ def test_a_sequence_may_be_empty() -> None:
 
 def test_a_quaternion_s_norm_is_told_of() -> None:
     text = pose_fault(PoseTask(1.0), pose_matrices((P, 2.0 * QUATERNION), "").tolist(), POLICY)
-    assert "a quaternion is to have norm 1" in text
+    assert "than the 1e-03 of orthonormalize (norm 1 of a quaternion?)" in text
 
 
 FAULTS = {
@@ -155,7 +155,7 @@ FAULTS = {
 def test_what_is_wrong_is_said(words: str) -> None:
     task, bad = PoseTask(1.0), FAULTS[words].tolist()
     text = pose_fault(task, bad, POLICY)
-    assert task.read(bad, POLICY) is None and "orthonormalize" not in text
+    assert task.read(bad, POLICY) is None and "orthonormalize=True" not in text
     assert words in text or words == "off by 5.0e-01"
     assert np.array_equal(nearest_pose(task, bad, POLICY), bad, equal_nan=True)
 
