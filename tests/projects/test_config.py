@@ -6,6 +6,7 @@ import json
 import shutil
 from pathlib import Path
 
+import numpy as np
 import pytest
 from tests.support.small_robots import write_robot
 
@@ -174,7 +175,7 @@ def test_an_error_of_the_system_is_told_as_by_every_command(
         ("[[arm]]\nname = 'a-b'\nrobot = 'r'", "not an identifier"),
         ("[[arm]]\nname = 'a'\nrobot = 'r'\nemmit = []", "unknown entry 'emmit'"),
         ("[[arm]]\nname = 'a'\nrobot = 'r'\nemit = 'cpp'", "not a list"),
-        ("[[arm]]\nname = 'a'\nrobot = 'r'\nlock = { j = 'x' }", "not a number"),
+        ("[[arm]]\nname = 'a'\nrobot = 'r'\nlock = { j = 'x' }", "not a finite number"),
         ("[[arm]]\nname = 'a'\nrobot = 'r'\n[[arm]]\nname = 'a'\nrobot = 'r'", "two arms"),
         ("arm = 3", "lists no arm"),
         ("[[arm]]\nname = 'a'\nrobot = 'r'\npackage_paths = ['no']", "no such directory: .*no"),
@@ -348,3 +349,26 @@ def test_a_record_that_a_config_lists_is_mended_by_the_config(
     (package / "ikgen.toml").write_text("[[arm]]\nwhat = 1\n")
     assert run(["verify", "generated/small_ik.json", "--samples", "20"]) == 1
     assert "ikgen from-urdf" in "".join(capsys.readouterr())
+
+
+def test_values_of_joints_may_have_their_units(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_robot(tmp_path / "elbow.urdf")
+    config = tmp_path / "ikgen.toml"
+
+    def written(values: str) -> Path:
+        config.write_text(f'[[arm]]\nname = "arm"\nrobot = "elbow.urdf"\n{values}\n')
+        return config
+
+    (arm,) = load_config(written('lock = { waist = "45deg" }\nfree = { elbow = "0.1rad" }'))
+    assert arm.request.lock == {"waist": np.pi / 4} and arm.request.free == {"elbow": 0.1}
+    assert run(["build", str(written('lock = { waist = "20mm" }'))]) == 2
+    assert "'mm' is no unit of a joint that turns" in capsys.readouterr().err
+    with pytest.raises(BadDescriptionError, match="waist: 'left' is not a finite") as caught:
+        load_config(written('lock = { waist = "left" }'))
+    assert '"45deg"' in caught.value.hint and caught.value.line == 4
+    assert run(["build", str(written('lock = { waist = "45deg" }')), "--no-verify", "-q"]) == 0
+    assert run(["build", str(config), "--check", "--no-verify"]) == 0
+    written(f"lock = {{ waist = {np.pi / 4!r} }}")
+    assert run(["build", str(config), "--check", "--no-verify"]) == 0

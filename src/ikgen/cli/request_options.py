@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from ikgen.derivation.joint_value import parse_joint_value
 from ikgen.errors import UsageError
 from ikgen.model.joint_relation import checked_relation
+from ikgen.model.joint_value import parse_joint_value
 from ikgen.model.maintainer import checked_maintainer
 from ikgen.model.module_name import checked_module_name
 from ikgen.records.request import Request

@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from ikgen.derivation.joint_value import JointValue
 from ikgen.derivation.pinned_joints import pinned_in_chain, with_pinned
 from ikgen.emit.derivation import Reading
 from ikgen.errors import BadDescriptionError, UsageError
 from ikgen.model.chain import PRISMATIC
 from ikgen.model.joint_tree import Joint
+from ikgen.model.joint_value import JointValue
 from ikgen.model.module_name import identifier
 from ikgen.model.oddity import Oddity, OddityKind
 

@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from ikgen.derivation.joint_value import parse_joint_value
 from ikgen.errors import ArgumentError, IkgenError, shown
 from ikgen.importers.named_robots import is_named, name_asked
 from ikgen.model.joint_relation import checked_relation
+from ikgen.model.joint_value import parse_joint_value
 from ikgen.model.module_name import checked_module_name
 from ikgen.records.request import Request, xacro_texts
 

@@ -166,7 +166,7 @@ def _plain(kind: type, value: Any, where: str) -> Any:
         word, hint = _WORDS[kind]
         raise CodecError(where, f"{value!r} is not a {word}", hint)
     try:
-        plain = kind(value)
+        plain = value if isinstance(value, kind) else kind(value)
     except OverflowError:  # an integer that is larger than any float
         plain = math.inf
     if isinstance(plain, float) and not math.isfinite(plain):

@@ -14,6 +14,7 @@ from typing import Any
 
 from ikgen.errors import IkgenError
 from ikgen.model.joint_relation import Mimic, Relation, checked_relation, read_relation
+from ikgen.model.joint_value import parse_joint_value
 from ikgen.model.maintainer import checked_maintainer
 from ikgen.model.module_name import checked_module_name
 from ikgen.records.codec import CodecError, coded, read_free, uncoded
@@ -56,6 +57,25 @@ def _relations(value: Any, where: str) -> Any:
     return value
 
 
+def _joint_values(value: Any, where: str) -> Any:
+    """Values of joints: numbers, or texts of a number and its unit."""
+    if not isinstance(value, Mapping):
+        return value
+    found = dict(value)
+    for joint, text in value.items():
+        if isinstance(text, str):
+            try:
+                found[joint] = parse_joint_value(text)
+            except ValueError as error:
+                hint = 'write a number in rad or m, or one with its unit in quotes: "45deg"'
+                raise CodecError(f"{where}.{joint}", str(error), hint) from None
+    return found
+
+
+def _held_joints(value: Any, where: str) -> Any:
+    return _joint_values(read_free(value, where), where)
+
+
 def _some(value: Any, where: str) -> Any:
     if value == []:
         raise CodecError(where, "names no output", 'leave it out, or write for example ["python"]')
@@ -84,8 +104,8 @@ class Request:
     tip: str | None = None
     task: str | None = None
     tool_axis: str | None = field(default=None, metadata=coded(_passes(checked_axis)))
-    free: Mapping[str, float | None] = field(default_factory=dict, metadata=coded(read_free))
-    lock: Mapping[str, float] = field(default_factory=dict)
+    free: Mapping[str, float | None] = field(default_factory=dict, metadata=coded(_held_joints))
+    lock: Mapping[str, float] = field(default_factory=dict, metadata=coded(_joint_values))
     couple: Mapping[str, str] = field(default_factory=dict, metadata=coded(_relations))
     args: Mapping[str, str] = field(default_factory=dict, metadata=coded(_arguments))
     package_paths: tuple[Path, ...] = ()
