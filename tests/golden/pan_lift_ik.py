@@ -790,6 +790,11 @@ def _differences(arm: _Arm, a: Array, b: Array) -> Array:
     return _within_periods(b - a, arm.period)
 
 
+def _neighbouring_rows(arm: _Arm, a: Array, b: Array) -> _Flags:
+    """Which rows a (n, dof) are nearly b (n, dof)."""
+    return np.asarray(np.abs(_differences(arm, a, b)).max(axis=1) < arm.policy.neighbouring)
+
+
 def _slide_scale(values: Array) -> Array:
     """What gaps between values (...) of slides count relative to."""
     return np.asarray(np.maximum(np.abs(values), 1.0))
@@ -929,8 +934,8 @@ def _thinned(arm: _Arm, rows: list[_Found]) -> list[_Found]:
     kept: list[_Found] = []
     for row, singular in rows:
         others = [other for other, flag in kept if flag] if singular else []
-        gaps = np.abs(_differences(arm, np.array(row), np.array(others).reshape(-1, len(row))))
-        if (gaps.max(axis=1) < arm.policy.neighbouring).sum() < arm.policy.crowd:
+        near = _neighbouring_rows(arm, np.array(others).reshape(-1, len(row)), np.array(row))
+        if near.sum() < arm.policy.crowd:
             kept.append((row, singular))
     return kept
 
@@ -1620,7 +1625,7 @@ def _collapsed(arm: _Arm, starts: _Starts, led: _Ends) -> _Flags:
     alone = (led.error < arm.policy.arrived) & (led.sigma > _CONTINUUM)
     some = alone[a] & alone[b]
     a, b = a[some], b[some]
-    same = np.abs(_differences(arm, led.q[a], led.q[b])).max(axis=1) < arm.policy.neighbouring
+    same = _neighbouring_rows(arm, led.q[a], led.q[b])
     same &= np.maximum(way[a], way[b]) > arm.policy.neighbouring  # not where two branches meet
     out = np.zeros(len(pose), dtype=bool)
     out[a[same]] = out[b[same]] = True
@@ -1724,11 +1729,11 @@ def _repeats(arm: _Arm, aim: Array, row: Row, kept: Sequence[_Found]) -> bool:
 def _untold(arm: _Arm, T: Array, a: Array, b: Array) -> _Flags:
     """Which singular rows a (k, dof) towards aims T (k, ...) nothing tells from others nearby, b (k,
     dof)."""
-    gaps = _differences(arm, a, b)
-    near, out = np.abs(gaps).max(axis=1) < arm.policy.neighbouring, np.zeros(len(a), dtype=bool)
+    near, out = _neighbouring_rows(arm, a, b), np.zeros(len(a), dtype=bool)
     if not near.any():
         return out
-    middle, T = (a + 0.5 * gaps)[near], T[near]
+    a, T = a[near], T[near]
+    middle = a + 0.5 * _differences(arm, a, b[near])
     off = np.abs(_linearized(arm, middle, T)[0]).max(axis=1)
     untold: _Flags = off < arm.policy.halfway
     some = np.flatnonzero(~untold & (off < arm.policy.arrived))
@@ -2017,8 +2022,8 @@ _ROUNDS = 3
 
 class _Walked(NamedTuple):
     """The `parts` of curves that were passed, and the `ends` behind which too much is left, both under the
-    first start of a curve; of each start which that is, `same`, and the most that is left, `worst` (k,);
-    of the first ones how many parts end near a curve, `steps` (k,)."""
+    first start of a curve; of the curve of each start (k,) which that is, `same`, the most that is left,
+    `worst`, and how many parts end near a curve, `steps`."""
 
     parts: _Parts
     ends: _Parts
@@ -2113,7 +2118,7 @@ class _Walks:
             some._replace(owner=same[some.owner % self._count]) for some in (parts, ends)
         )
         steps = np.bincount(parts.owner[near], minlength=self._count)
-        return _Walked(parts, ends, same, worst[same], steps)
+        return _Walked(parts, ends, same, worst[same], steps[same])
 
 
 def _ahead(arm: _Arm, b: _Reduced, before: Array) -> Array:

@@ -28,7 +28,7 @@ def as_dict(found: Inspection) -> dict[str, Any]:
     if found.dh is not None and found.geometry is not None:
         record["arm_angle"] = found.arm_angle
         record["chain"] = _chain(found.dh, found.geometry)
-        own = None if found.reading is None else found.reading.calibration
+        own = found.calibration
         record["chain"]["calibration"] = None if own is None else own.words
     record["attempts"] = [_attempt(one) for one in found.attempts]
     why = found.hindrance

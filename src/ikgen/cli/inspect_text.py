@@ -29,8 +29,8 @@ def as_text(found: Inspection) -> str:
         parts.append(_chains(found))
     if found.dh is not None and found.geometry is not None:
         parts += _chain(found.dh, found.geometry)
-        if found.reading is not None and found.reading.calibration is not None:
-            parts.append(f"calibrated: {found.reading.calibration.words}")
+        if found.calibration is not None:
+            parts.append(f"calibrated: {found.calibration.words}")
         if found.taken is None and found.dh.snaps:
             parts.append("a closed form may do with less: derivations tell")
         parts.append(_advice(found))

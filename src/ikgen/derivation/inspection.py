@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from ikgen.derivation.advice import Attempt
     from ikgen.emit.derivation import Reading
     from ikgen.errors import IkgenError
+    from ikgen.kinematics.calibrated import Calibration
     from ikgen.kinematics.classify import GeometryClass
     from ikgen.model.dh import DHChain
     from ikgen.model.joint_tree import JointTree
@@ -55,6 +56,11 @@ class Inspection:
         if taken is not None and taken.dh is not None:
             return taken.dh
         return self.reading.dh if self.reading is not None else None
+
+    @property
+    def calibration(self) -> Calibration | None:
+        """What there is to tell of the one arm's own rows, where these are."""
+        return None if self.reading is None else self.reading.calibration
 
     @property
     def closed(self) -> tuple[Attempt, ...]:

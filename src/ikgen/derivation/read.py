@@ -205,7 +205,7 @@ def _with_offsets(reading: Reading, request: Request) -> Reading:
 
 def read_tree(request: Request) -> JointTree:
     """All links and joints of the request's file."""
-    from ikgen.importers import argument_words, load_tree
+    from ikgen.importers import argument_hint, load_tree
 
     try:
         return load_tree(
@@ -215,7 +215,7 @@ def read_tree(request: Request) -> JointTree:
             trust=request.trust,
         )
     except BadDescriptionError as error:
-        words = argument_words(request.robot, request.args, request.package_paths)
+        words = argument_hint(request.robot, request.args, request.package_paths)
         error.hint = "\n".join(filter(None, [error.hint, words]))
         raise
 

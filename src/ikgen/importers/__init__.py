@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 __all__ = [
     "IMPORTERS",
     "Importer",
-    "argument_words",
+    "argument_hint",
     "importer_of",
     "load_tree",
     "taken_arguments",
@@ -197,7 +197,7 @@ def taken_arguments(path: str | Path, package_paths: Sequence[Path] = ()) -> dic
     return {name: robot.arguments.get(name, default) for name, default in found.items()}
 
 
-def argument_words(
+def argument_hint(
     path: str | Path, given: Mapping[str, str], package_paths: Sequence[Path] = ()
 ) -> str:
     """The arguments that a description takes, and which of those given are none of them; "" where there

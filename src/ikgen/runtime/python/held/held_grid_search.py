@@ -16,7 +16,7 @@ from ikgen.runtime.python.held.lone_value import with_lone_row
 from ikgen.runtime.python.held.slide_range import slide_range
 from ikgen.runtime.python.held.solution_search import NEAR, solutions_of, with_seeds_row
 from ikgen.runtime.python.held.values_descent import descended_rows
-from ikgen.runtime.python.rows.row_links import differences
+from ikgen.runtime.python.rows.row_links import differences, neighbouring_rows
 from ikgen.runtime.python.rows.row_preference import Preference, preference_costs, preference_of
 from ikgen.runtime.python.rows.solutions import Solutions, no_held_values
 from ikgen.runtime.python.solving.batch_solving import rows_batch
@@ -95,8 +95,7 @@ def _distinct(arm: Arm, rows: Array, order: Index) -> list[int]:
     """The rows (n, dof), in an order, that are not alike one before them."""
     out: list[int] = []
     for i in order.tolist():
-        gaps = np.abs(differences(arm, rows[out], rows[i]))
-        if not (gaps < arm.policy.neighbouring).all(axis=1).any():
+        if not neighbouring_rows(arm, rows[out], rows[i]).any():
             out.append(i)
     return out
 

@@ -10,7 +10,7 @@ from ikgen.runtime.python.arm.solved_arm import Arm
 from ikgen.runtime.python.arrays.angles import within_periods
 from ikgen.runtime.python.arrays.array_types import Array, Flags, Index
 
-__all__ = ["differences", "linked_rows", "origins", "slide_scale"]
+__all__ = ["differences", "linked_rows", "neighbouring_rows", "origins", "slide_scale"]
 
 _NEAR = 0.3  # rad or m that a row of a branch may be from its own before
 
@@ -18,6 +18,11 @@ _NEAR = 0.3  # rad or m that a row of a branch may be from its own before
 def differences(arm: Arm, a: Array, b: Array) -> Array:
     """b - a (..., dof), of turning joints on the shortest way."""
     return within_periods(b - a, arm.period)
+
+
+def neighbouring_rows(arm: Arm, a: Array, b: Array) -> Flags:
+    """Which rows a (n, dof) are nearly b (n, dof); see `policy.neighbouring`."""
+    return np.asarray(np.abs(differences(arm, a, b)).max(axis=1) < arm.policy.neighbouring)
 
 
 def slide_scale(values: Array) -> Array:

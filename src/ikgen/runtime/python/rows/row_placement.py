@@ -13,7 +13,7 @@ import numpy as np
 from ikgen.runtime.python.arm.solved_arm import Arm, Found
 from ikgen.runtime.python.arrays.angles import WHOLE_TURN, without_turns
 from ikgen.runtime.python.arrays.array_types import Array, Flags, Row
-from ikgen.runtime.python.rows.row_links import differences, slide_scale
+from ikgen.runtime.python.rows.row_links import differences, neighbouring_rows, slide_scale
 from ikgen.runtime.python.rows.row_pairs import pairs
 
 __all__ = [
@@ -172,8 +172,8 @@ def _thinned(arm: Arm, rows: list[Found]) -> list[Found]:
     kept: list[Found] = []
     for row, singular in rows:
         others = [other for other, flag in kept if flag] if singular else []
-        gaps = np.abs(differences(arm, np.array(row), np.array(others).reshape(-1, len(row))))
-        if (gaps.max(axis=1) < arm.policy.neighbouring).sum() < arm.policy.crowd:
+        near = neighbouring_rows(arm, np.array(others).reshape(-1, len(row)), np.array(row))
+        if near.sum() < arm.policy.crowd:
             kept.append((row, singular))
     return kept
 

@@ -33,8 +33,8 @@ _ROUNDS = 3
 
 class Walked(NamedTuple):
     """The `parts` of curves that were passed, and the `ends` behind which too much is left, both under the
-    first start of a curve; of each start which that is, `same`, and the most that is left, `worst` (k,);
-    of the first ones how many parts end near a curve, `steps` (k,)."""
+    first start of a curve; of the curve of each start (k,) which that is, `same`, the most that is left,
+    `worst`, and how many parts end near a curve, `steps`."""
 
     parts: Parts
     ends: Parts
@@ -131,7 +131,7 @@ class _Walks:
             some._replace(owner=same[some.owner % self._count]) for some in (parts, ends)
         )
         steps = np.bincount(parts.owner[near], minlength=self._count)
-        return Walked(parts, ends, same, worst[same], steps)
+        return Walked(parts, ends, same, worst[same], steps[same])
 
 
 def _ahead(arm: Arm, b: Reduced, before: Array) -> Array:

@@ -13,7 +13,7 @@ from ikgen.runtime.python.arrays.array_tuples import joined, some_of
 from ikgen.runtime.python.arrays.array_types import Array, Flags, Index, Row
 from ikgen.runtime.python.newton.arm_newton import linearized, refined
 from ikgen.runtime.python.newton.refinement import least_singular
-from ikgen.runtime.python.rows.row_links import differences
+from ikgen.runtime.python.rows.row_links import differences, neighbouring_rows
 from ikgen.runtime.python.rows.row_placement import distinct, same_rows
 from ikgen.runtime.python.rows.solution_rows import pairs_within, places
 from ikgen.runtime.python.singular.curve_parts import look_between
@@ -129,7 +129,7 @@ def _collapsed(arm: Arm, starts: Starts, led: Ends) -> Flags:
     alone = (led.error < arm.policy.arrived) & (led.sigma > _CONTINUUM)
     some = alone[a] & alone[b]
     a, b = a[some], b[some]
-    same = np.abs(differences(arm, led.q[a], led.q[b])).max(axis=1) < arm.policy.neighbouring
+    same = neighbouring_rows(arm, led.q[a], led.q[b])
     same &= np.maximum(way[a], way[b]) > arm.policy.neighbouring  # not where two branches meet
     out = np.zeros(len(pose), dtype=bool)
     out[a[same]] = out[b[same]] = True
@@ -236,9 +236,7 @@ def _fresh(arm: Arm, q: Array, starts: Starts, near: Flags, stalled: Flags) -> F
     fresh[own] |= distinct(arm, rows, valid)[pose, place]
     for k in np.flatnonzero(fresh & beside & stalled).tolist():
         others = q[:k][(fresh & near & (starts.pose == starts.pose[k]))[:k]]
-        fresh[k] = not (
-            np.abs(differences(arm, others, q[k])).max(axis=1) < arm.policy.neighbouring
-        ).any()
+        fresh[k] = not neighbouring_rows(arm, others, q[k]).any()
     return fresh
 
 
@@ -256,11 +254,11 @@ def repeats(arm: Arm, aim: Array, row: Row, kept: Sequence[Found]) -> bool:
 def _untold(arm: Arm, T: Array, a: Array, b: Array) -> Flags:
     """Which singular rows a (k, dof) towards aims T (k, ...) nothing tells from others nearby, b (k, dof):
     the pose is theirs between them too, on the straight way or on a curve beside that."""
-    gaps = differences(arm, a, b)
-    near, out = np.abs(gaps).max(axis=1) < arm.policy.neighbouring, np.zeros(len(a), dtype=bool)
+    near, out = neighbouring_rows(arm, a, b), np.zeros(len(a), dtype=bool)
     if not near.any():
         return out
-    middle, T = (a + 0.5 * gaps)[near], T[near]
+    a, T = a[near], T[near]
+    middle = a + 0.5 * differences(arm, a, b[near])
     off = np.abs(linearized(arm, middle, T)[0]).max(axis=1)
     untold: Flags = off < arm.policy.halfway
     some = np.flatnonzero(~untold & (off < arm.policy.arrived))

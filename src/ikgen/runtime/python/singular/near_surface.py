@@ -15,7 +15,7 @@ from ikgen.runtime.python.arm.solved_arm import Arm
 from ikgen.runtime.python.arrays.array_tuples import some_of
 from ikgen.runtime.python.arrays.array_types import Array, Flags, Index
 from ikgen.runtime.python.newton.arm_newton import linearized
-from ikgen.runtime.python.rows.row_links import differences
+from ikgen.runtime.python.rows.row_links import neighbouring_rows
 from ikgen.runtime.python.rows.solution_rows import places
 from ikgen.runtime.python.singular.meeting_rows import Leads, Starts
 
@@ -155,7 +155,6 @@ def _unlike(arm: Arm, q: Array, pose: Index) -> Index:
     kept: list[int] = []
     for k, row in enumerate(q):
         others = [i for i in kept if pose[i] == pose[k]]
-        gaps = np.abs(differences(arm, q[others], row)).max(axis=1)
-        if len(others) < _ROOM and not (gaps < arm.policy.neighbouring).any():
+        if len(others) < _ROOM and not neighbouring_rows(arm, q[others], row).any():
             kept.append(k)
     return np.array(kept, dtype=np.intp)
