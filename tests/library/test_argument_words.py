@@ -13,7 +13,8 @@ from tests.support.solving import FIXTURES
 
 import ikgen
 from ikgen.errors import IkgenError
-from ikgen.library.argument_words import PROSE, argument_words, option_names
+from ikgen.library.argument_words import ARGUMENTS, argument_words
+from ikgen.records.option_words import PROSE
 
 SOURCE = Path(ikgen.__file__).parent
 UR5E, YUMI = FIXTURES / "ur5e.urdf", FIXTURES / "abb_yumi.urdf"
@@ -45,7 +46,7 @@ def test_options_are_arguments(typed: str, written: str | None) -> None:
 
 
 def test_they_are_arguments_that_there_are() -> None:
-    words = argument_words(" ".join(option_names()))
+    words = argument_words(" ".join(ARGUMENTS.options))
     assert set(re.findall(r"(\w+)=", words)) <= set(inspect.signature(ikgen.load).parameters)
 
 
@@ -60,7 +61,7 @@ def _texts(module: Path) -> list[str]:
 
 
 def test_words_behind_options_are_known() -> None:
-    pattern = re.compile(rf"(?:{'|'.join(option_names())}) ([a-z]\w*)")
+    pattern = re.compile(rf"(?:{'|'.join(ARGUMENTS.options)}) ([a-z]\w*)")
     modules = [path for path in SOURCE.rglob("*.py") if "cli" not in path.parts]
     behind = {word for path in modules for text in _texts(path) for word in pattern.findall(text)}
     assert behind == PROSE

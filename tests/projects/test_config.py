@@ -132,7 +132,7 @@ def test_what_ikgen_wrote_is_replaced_and_nothing_else(
 def test_one_bad_arm_leaves_the_others(package: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (package / "ikgen.toml").write_text(CONFIG.replace('"tool0"', '"tol0"'))
     assert run(["build", "--no-verify"]) == 2
-    assert "error: kuka: no link named 'tol0'" in capsys.readouterr().err
+    assert "error: ikgen.toml:6: kuka: no link named 'tol0'" in capsys.readouterr().err
     assert (package / "generated/small_ik.py").is_file()
 
 
@@ -161,7 +161,7 @@ def test_an_error_of_the_system_is_told_as_by_every_command(
     monkeypatch.setattr("ikgen.generation.generate.generate", fail)
     assert run(["build", "--jobs", "1"]) == 2
     said = capsys.readouterr().err
-    assert "error: kuka: generated/kuka_ik.py: Permission denied" in said
+    assert "kuka: generated/kuka_ik.py: Permission denied" in said
     assert "hint: check the path and its permissions" in said
 
 

@@ -129,10 +129,9 @@ def _check(
     quiet: bool,
 ) -> int:
     """Say what is stale; writes nothing and imports nothing heavy."""
-    from ikgen.projects.check import stale_lines
-    from ikgen.projects.stale import stale_reasons
+    from ikgen.projects.check import reasons_checked, stale_lines
 
-    reasons = stale_reasons(arms, verify=verify)
+    reasons = reasons_checked(arms, verify=verify)
     code = 1 if any(reasons) else 0
     if as_json:
         rows = [
@@ -181,7 +180,7 @@ def _print(
 ) -> None:
     if as_json:
         bad = [o for o in outcomes if o.exit_code]
-        message = "; ".join(f"{o.name}: {o.message}" for o in bad)
+        message = "; ".join(o.error for o in bad)
         hint = "\n".join(dict.fromkeys(o.hint for o in bad if o.hint))
         rest = [{"name": o.name, "files": [path.as_posix() for path in o.files]} for o in left]
         _echo({"arms": [_row(o) for o in outcomes], "left": rest}, code, message, hint)
@@ -193,7 +192,7 @@ def _print(
         if o.exit_code:
             if o.trace and verbose:
                 click.echo(o.trace, err=True)
-            say(f"{o.name}: {o.message}", o.hint)
+            say(o.error, o.hint)
         elif not quiet and not as_json:
             many = f", at most {counted(o.solutions, 'solution')} a pose"
             missed = f"; {o.missed}" if o.missed else ""

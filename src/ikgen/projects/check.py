@@ -7,12 +7,36 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from ikgen.errors import IkgenError
+from ikgen.errors import BadDescriptionError, IkgenError, UnknownNameError
+from ikgen.generation.emitters import find_emitter
 from ikgen.projects.config import ArmConfig, named_config
 from ikgen.projects.recorded_arms import ROBOT_NOW, has_lost_robot, listed_arms
 from ikgen.projects.stale import stale_reasons
+from ikgen.tasks import find_task
 
-__all__ = ["main", "mending", "stale_lines"]
+__all__ = ["main", "mending", "reasons_checked", "stale_lines"]
+
+
+def reasons_checked(arms: Sequence[ArmConfig], *, verify: bool = True) -> list[str]:
+    """`stale_reasons`; raises `BadDescriptionError` where what is stale asks for a task or an output that
+    there is not, so that it would not be made either."""
+    reasons = stale_reasons(arms, verify=verify)
+    for arm, reason in zip(arms, reasons, strict=True):
+        try:
+            if reason and arm.request.task is not None:
+                find_task(arm.request.task)
+            for name in arm.outputs.emit if reason else ():
+                find_emitter(name)
+        except UnknownNameError as error:
+            if arm.place is None:
+                raise
+            raise BadDescriptionError(
+                f"{arm.name}: {error.message}",
+                file=arm.place.file.as_posix(),
+                line=arm.place.line_about([error.name]),
+                hint=error.hint,
+            ) from None
+    return reasons
 
 
 def stale_lines(reasons: Sequence[tuple[str, str]]) -> list[str]:
@@ -39,7 +63,7 @@ def main(configs: Sequence[str]) -> int:
             path = named_config(config)
             arms = listed_arms(path)
             reasons = [
-                (arm.name, reason) for arm, reason in zip(arms, stale_reasons(arms), strict=True)
+                (arm.name, reason) for arm, reason in zip(arms, reasons_checked(arms), strict=True)
             ]
         except IkgenError as error:
             hint = [f"hint: {error.hint}"] if error.hint else []

@@ -13,8 +13,8 @@ from ikgen.importers.merge_conflict import conflict_or
 from ikgen.importers.named_robots import is_named
 from ikgen.importers.toml_text import parse_toml
 from ikgen.model.module_name import identifier
-from ikgen.projects.config_lines import line_of
-from ikgen.records.codec import CodecError, Decoder, inlined
+from ikgen.projects.config_lines import ArmPlace, line_of
+from ikgen.records.codec import CodecError, Decoder, inlined, uncoded
 from ikgen.records.record import record_name, records_of
 from ikgen.records.request import Outputs, Request
 from ikgen.tasks import stem_and_axis
@@ -28,10 +28,11 @@ PYPROJECT = "pyproject.toml"
 @dataclass(frozen=True, slots=True)
 class ArmConfig:
     """One `[[arm]]`: what it asks for and what is written; paths are those of the config joined to its
-    folder."""
+    folder. `place` is None for what no config lists."""
 
     request: Request = field(metadata=inlined())
     outputs: Outputs = field(metadata=inlined())
+    place: ArmPlace | None = field(default=None, metadata=uncoded())
 
     @property
     def name(self) -> str:
@@ -79,12 +80,17 @@ def load_config(path: Path) -> tuple[ArmConfig, ...]:
             raise CodecError(key, f"unknown entry '{key}'", "there is: arm")
         tables = data.get("arm", [])
         if not isinstance(tables, list) or not tables:
-            raise _error(path, "lists no arm", hint="add a table [[arm]] with name and robot")
+            hint = (
+                "write [[arm]], in two brackets"
+                if tables
+                else "add a table [[arm]] with name and robot"
+            )
+            raise _error(path, "lists no arm", hint=hint)
         arms = [(i, arm) for i, table in enumerate(tables) for arm in _arms(decoder, table, i)]
         _check_places(arms)
     except CodecError as error:
         raise _error(path, str(error), line=line_of(text, error.where), hint=error.hint) from None
-    return tuple(arm for _, arm in arms)
+    return tuple(replace(arm, place=ArmPlace(path, i)) for i, arm in arms)
 
 
 def _arms(decoder: Decoder, table: Any, index: int) -> Iterator[ArmConfig]:

@@ -3,10 +3,36 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
 
-__all__ = ["line_of"]
+__all__ = ["ArmPlace", "line_of"]
 
 _ARM = re.compile(r"^\s*\[\[\s*(tool\.ikgen\.)?arm\s*\]\]")
+
+
+@dataclass(frozen=True, slots=True)
+class ArmPlace:
+    """The table of an arm in a config, by its index."""
+
+    file: Path
+    index: int
+
+    def line_about(self, words: Iterable[str]) -> int | None:
+        """The line (from 1) of the table that has the first of the words that one has, else where the table
+        begins; None where that cannot be told."""
+        lines = self.file.read_text("utf-8", errors="replace").splitlines()
+        found = _table(lines, self.index)
+        if found is None:
+            return None
+        start, end = found
+        for word in words:
+            whole = re.compile(rf"(?<![\w.-]){re.escape(word)}(?![\w-])")
+            for i in range(start + 1, end):
+                if whole.search(lines[i].partition("#")[0]):
+                    return i + 1
+        return start + 1
 
 
 def line_of(text: str, where: str) -> int | None:
@@ -16,14 +42,21 @@ def line_of(text: str, where: str) -> int | None:
     place = re.match(r"arm\[(\d+)\]", where)
     if place is None:
         return _key(lines, 0, len(lines), where)
-    starts = [i for i, line in enumerate(lines) if _ARM.match(line)]
-    if int(place.group(1)) >= len(starts):
-        return None  # written as an inline table
-    start = starts[int(place.group(1))]
-    end = next((i for i in starts if i > start), len(lines))
+    table = _table(lines, int(place.group(1)))
+    if table is None:
+        return None
+    start, end = table
     keys = re.findall(r"\.([^.\[\]]+)", where)
     found = [line for key in keys if (line := _key(lines, start + 1, end, key)) is not None]
     return found[-1] if found else start + 1
+
+
+def _table(lines: list[str], index: int) -> tuple[int, int] | None:
+    """Where an `[[arm]]` begins and ends; None of one that is written as an inline table."""
+    starts = [i for i, line in enumerate(lines) if _ARM.match(line)]
+    if index >= len(starts):
+        return None
+    return starts[index], next(iter(starts[index + 1 :]), len(lines))
 
 
 def _key(lines: list[str], start: int, end: int, key: str) -> int | None:

@@ -51,7 +51,7 @@ class IkgenBuildHook(BuildHookInterface):  # type: ignore[type-arg]
         verify = bool(self.config.get("verify", True))
         for outcome in build_arms(arms, verify=verify, progress=self._say):
             if outcome.exit_code:
-                raise IkgenError(f"{outcome.name}: {outcome.message}", hint=outcome.hint)
+                raise IkgenError(outcome.error, hint=outcome.hint)
             for path in outcome.files:
                 inside = os.path.relpath(path.resolve(), root.resolve())
                 place = Path(inside).as_posix()  # where it is: a source distribution is the project

@@ -9,10 +9,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ikgen.derivation.progress import Progress, Stage, Steps, silent
-from ikgen.errors import INTERNAL_ERROR, IkgenError, told
+from ikgen.errors import INTERNAL_ERROR, IkgenError, place_in, told
 from ikgen.outputs.journal import complete_folder
 from ikgen.processes.executors import Workers
 from ikgen.projects.config import ArmConfig
+from ikgen.projects.entry_words import EntryWords
 from ikgen.projects.stale import stale_reasons
 from ikgen.records.record import read_record
 
@@ -33,7 +34,8 @@ class Outcome:
     are what has to be told of the file and of what was generated, `solutions` how many a pose has at
     most, `missed` in words what the verification of each output missed, empty where that is nothing;
     `held` says which joints were chosen to be held, and why; `steps` are what the work told while it ran
-    and `work` how it went, where that was asked for."""
+    and `work` how it went, where that was asked for. `place` is what the error is about in the config, as
+    messages begin with it ("": nothing that can be told)."""
 
     name: str
     reason: str
@@ -49,6 +51,12 @@ class Outcome:
     held: str = ""
     steps: tuple[tuple[Stage, str], ...] = ()
     work: str = ""
+    place: str = ""
+
+    @property
+    def error(self) -> str:
+        """The message, with whose it is."""
+        return f"{self.place}{self.name}: {self.message}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,7 +152,27 @@ def _build_one(job: _Job) -> Outcome:
     except Exception as error:
         outcome = _failed(job, error)
         work = job.words(error) if job.words and isinstance(error, IkgenError) else ""
-    return replace(outcome, steps=tuple(steps.told), work=work) if job.words else outcome
+    if job.words:
+        outcome = replace(outcome, steps=tuple(steps.told), work=work)
+    return _in_config_words(outcome, job.arm)
+
+
+def _in_config_words(outcome: Outcome, arm: ArmConfig) -> Outcome:
+    """What is told of an arm that a config lists: of its entries, and where the error's stands."""
+    if arm.place is None:
+        return outcome
+    said = EntryWords(arm.request)
+    told = replace(
+        outcome,
+        hint=said.words(outcome.hint),
+        held=said.words(outcome.held),
+        warnings=tuple(map(said.words, outcome.warnings)),
+    )
+    if not outcome.message or outcome.exit_code == INTERNAL_ERROR:
+        return told
+    line = arm.place.line_about(said.names_in(outcome.message))
+    place = place_in(arm.place.file.as_posix(), line)
+    return replace(told, message=said.words(outcome.message), place=place)
 
 
 def _failed(job: _Job, error: Exception) -> Outcome:

@@ -53,7 +53,7 @@ def recheck(
     fix = command or (made if robot is None else forced)  # they may be of another robot
     request = replace(record.again(robot), trust=trust)
     if robot is None and is_lost(request.robot):
-        raise _gone(record, request.robot)
+        raise _gone(record, request.robot, command)
     findings = [*_edited(record, forced), *_left_over(record)]
     progress("read", str(request.robot))
     try:
@@ -62,18 +62,22 @@ def recheck(
         if not (is_named(request.robot) or request.robot.is_file()):
             raise
         message = f"made from another description: {error.message}"
-        way_out = f"ikgen inspect {shlex.quote(str(request.robot))}"
-        return Recheck(record.path, record, (*findings, Finding(record.path, message, way_out)))
+        look = f"ikgen inspect {shlex.quote(str(request.robot))}"
+        listed = f"change its entry in the config, then {command}: {error.hint}" if command else ""
+        found = Finding(record.path, message, "" if listed else look, hint=listed)
+        return Recheck(record.path, record, (*findings, found))
     block = SampleBlock(record.path, robot, trust, fix, samples, seed)
     run = _Run(block, workers or Workers(), progress, done)
     found = _checked(record, reading, run)
     return replace(found, findings=(*findings, *found.findings))
 
 
-def _gone(record: Record, robot: Path) -> BadDescriptionError:
-    """That the description is not where the outputs were made from it."""
+def _gone(record: Record, robot: Path, command: str | None) -> BadDescriptionError:
+    """That the description is not where the outputs were made from it; `command`: of a config's."""
     folder = shlex.quote(record.folder.as_posix())
     hint = f"ikgen verify {folder} {ROBOT_NOW}"
+    if command is not None:
+        hint = f"name where it is by robot in the config, then {command}; or {hint}"
     return BadDescriptionError("no such file", file=str(robot), hint=hint)
 
 

@@ -55,7 +55,7 @@ def generate_arms(root: Path) -> None:
         raise _ended(error.message, error.hint) from None
     for outcome in outcomes:
         if outcome.exit_code:
-            raise _ended(f"{outcome.name}: {outcome.message}", outcome.hint)
+            raise _ended(outcome.error, outcome.hint)
 
 
 def _ended(message: str, hint: str) -> ExecError:

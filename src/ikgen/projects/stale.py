@@ -11,6 +11,7 @@ from typing import Any
 
 from ikgen import __version__
 from ikgen.errors import BadDescriptionError
+from ikgen.importers.named_robots import is_lost
 from ikgen.outputs.journal import half_in_place
 from ikgen.projects.check_findings import HALF_IN_PLACE
 from ikgen.projects.config import ArmConfig
@@ -42,7 +43,8 @@ def why_stale(arm: ArmConfig, packages: Packages | None = None, *, verify: bool 
     if half_in_place(arm.outputs.out / record_name(arm.name)):
         return HALF_IN_PLACE
     if not paths[0].is_file():
-        return "not generated yet"
+        lost = f", and {arm.request.robot} is not there" if is_lost(arm.request.robot) else ""
+        return f"not generated yet{lost}"
     try:
         records = [read_record(path) for path in paths]
     except BadDescriptionError as error:
