@@ -146,3 +146,19 @@ def test_elimination_needs_numbers(tmp_path: Path) -> None:
     module = derive(Request(path)).module
     with pytest.raises(UsageError, match="only an elimination solves this arm"):
         emit_module(module)
+
+
+def test_constants_of_expressions_are_told_with_them(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    table = tmp_path / "arm.toml"
+    text = PUMA.read_text().replace('a = "a_2"', 'a = "2*h - l1/4 + 0.1"', 1)
+    table.write_text(text.replace('"d_3"', '"-height"', 1))
+    options = ["-o", str(tmp_path), "--samples", "20", "--emit", "python,cpp", "--no-verify"]
+    assert run(["from-dh", str(table), *options]) == 0
+    told = "a_2 = 2*h - 0.25*l1 + 0.1, height_ = height, a_3, d_4"
+    assert told in capsys.readouterr().out
+    for module, comment in (("puma560_ik.py", "  # "), ("puma560_ik.hpp", ";  // ")):
+        lines = (tmp_path / module).read_text().splitlines()
+        found = [line.partition(comment)[2].partition(": ")[2] for line in lines if "a_2" in line]
+        assert "2*h - 0.25*l1 + 0.1" in found, module

@@ -36,7 +36,7 @@ def summary(generation: Generation) -> str:
         lines.append(("verified", "no"))
     if dh.symbols:
         words = "; verified with sample numbers" if generation.reports else ""
-        lines.append(("fill in", f"{', '.join(dh.symbols)}{words}"))
+        lines.append(("fill in", f"{dh.symbol_words}{words}"))
     lines += _manifest(generation)
     lines += [("wrote", str(path)) for path in generation.files]
     lines.append(("time", f"{generation.seconds:.1f} s"))

@@ -15,11 +15,13 @@ __all__ = ["Blank", "blank_functions", "blanks"]
 @dataclass(frozen=True, slots=True)
 class Blank:
     """A constant without a number: `value` is what the emitted text gives it (NaN: to be filled in),
-    `sample` what it was checked with (m or rad)."""
+    `sample` what it was checked with (m or rad), `written` what it is in the table's own names ("": its
+    name)."""
 
     name: str
     value: float
     sample: float
+    written: str = ""
 
 
 def blanks(module: SolverModule) -> tuple[Blank, ...]:
@@ -37,7 +39,11 @@ def blanks(module: SolverModule) -> tuple[Blank, ...]:
             hint="give them under [parameters]; without numbers only a report can be written",
         )
     samples = module.dh.named_constants()
-    return tuple(Blank(n, samples[n] if module.sample else math.nan, samples[n]) for n in names)
+    written = dict(module.dh.written)
+    return tuple(
+        Blank(n, samples[n] if module.sample else math.nan, samples[n], written.get(n, ""))
+        for n in names
+    )
 
 
 def blank_functions(module: SolverModule) -> tuple[AngleFunction, ...]:

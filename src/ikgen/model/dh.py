@@ -136,7 +136,8 @@ class DHChain:
     (4, 4), the file's own chain to round-off: `T = F_0 M_1(v_1) F_1 ... M_n(v_n) F_n` with `v_i` the DH
     variable of row i (offset included) and `M` = Rz or Tz. `deviation` is the largest difference
     between the two over random configurations: (m, rad). `transmission` is between motors and joints
-    where each joint has no motor of its own; all else here, limits too, is of the joints.
+    where each joint has no motor of its own; all else here, limits too, is of the joints. `written` has
+    symbols that are not the file's own names for what they stand for, with that.
     """
 
     robot: str
@@ -152,6 +153,7 @@ class DHChain:
     free: tuple[str, ...] = ()
     locked: tuple[tuple[str, float], ...] = ()
     transmission: Transmission | None = None
+    written: tuple[tuple[str, str], ...] = ()
 
     @property
     def dof(self) -> int:
@@ -200,6 +202,13 @@ class DHChain:
         """Names of lengths and angles without numbers; such a chain can be derived, not emitted."""
         names = {x.name: None for x in self.constants() if x.symbolic and x.name is not None}
         return tuple(names)
+
+    @property
+    def symbol_words(self) -> str:
+        """The `symbols` in a line, each with what it stands for where that is not its name."""
+        written = dict(self.written)
+        words = (f"{name} = {written[name]}" if name in written else name for name in self.symbols)
+        return ", ".join(words)
 
     def constants(self) -> Iterator[Angle | Length]:
         """The constants of all rows, base to tip, also zeros and multiples of pi, which have no names."""

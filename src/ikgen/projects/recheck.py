@@ -64,8 +64,8 @@ def recheck(
         message = f"made from another description: {error.message}"
         look = f"ikgen inspect {shlex.quote(str(request.robot))}"
         listed = f"change its entry in the config, then {command}: {error.hint}" if command else ""
-        found = Finding(record.path, message, "" if listed else look, hint=listed)
-        return Recheck(record.path, record, (*findings, found))
+        lost = Finding(record.path, message, "" if listed else look, hint=listed)
+        return Recheck(record.path, record, (*findings, lost))
     block = SampleBlock(record.path, robot, trust, fix, samples, seed)
     run = _Run(block, workers or Workers(), progress, done)
     found = _checked(record, reading, run)
@@ -143,10 +143,9 @@ def _checked(record: Record, reading: Reading, run: _Run) -> Recheck:
         message = f"made for other joints: {was}; the description has {now}"
         return Recheck(record.path, record, (Finding(record.path, message, fix),), notes)
     if dh.symbols:
-        blanks = ", ".join(dh.symbols)
         missing = Finding(
             record.path,
-            f"not checked: no numbers for {blanks}",
+            f"not checked: no numbers for {dh.symbol_words}",
             exit_code=2,
             hint="give them, by the table's names, under [parameters] of "
             f"{record.request.robot}, then {fix}",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, field
 
-from ikgen.importers.dh.entry_expression import Quantity
+from ikgen.importers.dh.entry_expression import Quantity, Terms
 from ikgen.kinematics.snapping import SnapLog, exact_angle, tidy, wrap_angle
 from ikgen.model.angle_function import cosine_and_sine
 from ikgen.model.dh import Angle, Length
@@ -68,6 +68,17 @@ class SymbolTable:
         symbol = next((s for s, k in self.names.items() if k == key), place)
         return Angle(wrap_angle(q.value), None, self._claim(symbol, key, turns=True), q.symbolic)
 
+    def written(self) -> dict[str, str]:
+        """What symbols stand for in the table's own names, where these are others: a name, or a sum."""
+        found = {}
+        for symbol, key in self.names.items():
+            match key:
+                case ("user", str(name)) if name != symbol:
+                    found[symbol] = name
+                case (tuple(terms), float(constant)) if terms:
+                    found[symbol] = _sum_text(terms, constant)
+        return found
+
     def _claim(self, symbol: str, key: object, *, turns: bool = False) -> str:
         """The symbol, with underscores where another quantity has it, or what `turns` needs besides: the
         names of its cosine and sine."""
@@ -78,3 +89,17 @@ class SymbolTable:
                 self.names.update(needed)
                 return symbol
             symbol += "_"
+
+
+def _sum_text(terms: Terms, constant: float) -> str:
+    """A quantity as a table would have it."""
+    parts = [_product_text(name, factor) for name, factor in terms]
+    parts += [f"{constant:.12g}"] if constant else []
+    return " + ".join(parts).replace("+ -", "- ")
+
+
+def _product_text(name: str, factor: float) -> str:
+    """A name times a number."""
+    if abs(factor) == 1.0:
+        return name if factor > 0.0 else f"-{name}"
+    return f"{factor:.12g}*{name}"

@@ -62,6 +62,7 @@ def exact_chain(
         snaps=log.snaps,
         free=free,
         locked=locked,
+        written=tuple(book.written().items()),
     )
     return replace(dh, deviation=largest_deviation(dh))
 

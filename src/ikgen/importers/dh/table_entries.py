@@ -183,7 +183,8 @@ def _check_parameters(
                 f"no parameter named '{name}'", f"did you mean '{close}'?", joint=i, key=key
             )
     symbols = sorted({name for _, _, name in _terms(entries)} - set(parameters))
-    names = [_in_code(n) for n in symbols if n.isidentifier()]
+    alone = {q.single[0] for e in entries for q in (e.alpha, e.a, e.d, e.theta) if q.single}
+    names = [_in_code(n) if n in alone else n for n in symbols if n.isidentifier()]
     if names and parameters:
         document.warn(f"kept as symbols, without numbers: {', '.join(names)}")
     if unused:
