@@ -1507,6 +1507,12 @@ template <class Arm> struct FoldPair {
     return {slope, along, shift};
   }
 
+  static double dot(const double* u, const double* v) noexcept {
+    double sum = 0.0;
+    for (int k = 0; k < kMoving; ++k) sum += u[k] * v[k];
+    return sum;
+  }
+
   static double flow_of(const PoseError<Arm>& at, int e, const Vector& along) noexcept {
     double flow = 0.0;
     for (int k = 0; k < kMoving; ++k) flow += at.slope[e][kJoints[k]] * along[k];
@@ -1651,20 +1657,18 @@ template <class Arm> struct CurveSamples {
     for (double& x : s.out) x = -x;
   }
 
+  static void take_chord(const Sample& a, const Sample& b, double* way) noexcept {
+    for (int k = 0; k < Fold::kMoving; ++k) way[k] = b.q[Fold::kJoints[k]] - a.q[Fold::kJoints[k]];
+  }
+
   static void between(const Sample& a, const Sample& b, double share, double* q) noexcept {
-    double along = 0.0, beyond = 0.0;
-    for (int k = 0; k < Fold::kMoving; ++k) {
-      const double way = b.q[Fold::kJoints[k]] - a.q[Fold::kJoints[k]];
-      along += way * a.still[k];
-      beyond += way * b.still[k];
-    }
+    double way[Fold::kMoving];
+    take_chord(a, b, way);
+    const double along = Fold::dot(way, a.still), beyond = Fold::dot(way, b.still);
     const double rest = 1.0 - share, first = share * rest * rest, last = -share * share * rest;
     std::copy_n(a.q, Arm::kDof, q);
-    for (int k = 0; k < Fold::kMoving; ++k) {
-      const int j = Fold::kJoints[k];
-      const double way = b.q[j] - a.q[j];
-      q[j] += share * way + first * (along * a.still[k] - way) + last * (beyond * b.still[k] - way);
-    }
+    for (int k = 0; k < Fold::kMoving; ++k)
+      q[Fold::kJoints[k]] += share * way[k] + first * (along * a.still[k] - way[k]) + last * (beyond * b.still[k] - way[k]);
   }
 
  private:
@@ -1675,12 +1679,7 @@ template <class Arm> struct CurveSamples {
   static constexpr double kSlow = 0.1, kSteady = 0.8;  // how fast corrections converge that are not left to themselves
 
   static bool leap(const double* before, const double* across, double* q) noexcept {
-    double along = 0.0, square = 0.0;
-    for (int k = 0; k < Fold::kMoving; ++k) {
-      along += across[k] * before[k];
-      square += before[k] * before[k];
-    }
-    const double ratio = along / square;
+    const double ratio = Fold::dot(across, before) / Fold::dot(before, before);
     if (!(std::abs(ratio) < kSteady)) return false;
     for (int k = 0; k < Fold::kMoving; ++k) q[Fold::kJoints[k]] += ratio / (1.0 - ratio) * across[k];
     return true;
@@ -1814,14 +1813,10 @@ template <class Arm> struct CurveParts : CurveSamples<Arm> {
   }
 
   static void take_inner(const Sample& a, const Sample& b, double (&inner)[2]) noexcept {
-    double rise = 0.0, fall = 0.0;
-    for (int k = 0; k < Fold::kMoving; ++k) {
-      const double step = b.q[Fold::kJoints[k]] - a.q[Fold::kJoints[k]];
-      rise += a.slope * a.still[k] * step;
-      fall += b.slope * b.still[k] * step;
-    }
-    inner[0] = a.left + rise / 3.0;
-    inner[1] = b.left - fall / 3.0;
+    double way[Fold::kMoving];
+    Curve::take_chord(a, b, way);
+    inner[0] = a.left + a.slope * Fold::dot(way, a.still) / 3.0;
+    inner[1] = b.left - b.slope * Fold::dot(way, b.still) / 3.0;
   }
 
   static double root_share(const Sample& a, const Sample& b, double share) noexcept {
@@ -1926,6 +1921,7 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
 
  private:
   static constexpr int kMost = 96;
+  static constexpr double kSettled = 4.0, kAround = 2.0;  // steps behind which it is on its curve, and it may be back
   static constexpr int kLeast = 4;
   static constexpr int kRounds = 3;
   static constexpr double kBeside = 0.06;
@@ -2002,17 +1998,13 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
     const Sample origin = b;
     if (is_solution(b)) keep(b);
     passed.add(b, true);
-    double reach = Policy::kTryStep, last = reach, before[Fold::kMoving];
+    Sample settled;
+    const double begun = steps;
+    double reach = Policy::kTryStep, last = reach, from = kInfinity, before[Fold::kMoving];  // from: where it settled
     std::copy_n(b.still, Fold::kMoving, before);
     for (int k = 0; k < kMost && samples > 0; ++k) {
-      double q[Arm::kDof], course[Fold::kMoving], largest = 0.0;
-      const double turn = 0.5 * reach / last;
-      std::copy_n(b.q, Arm::kDof, q);
-      for (int i = 0; i < Fold::kMoving; ++i) {
-        course[i] = b.still[i] + turn * (b.still[i] - before[i]);
-        largest = std::max(largest, std::abs(course[i]));
-      }
-      for (int i = 0; i < Fold::kMoving; ++i) q[Fold::kJoints[i]] += reach / largest * course[i];
+      double q[Arm::kDof];
+      step_on(b, before, 0.5 * reach / last, reach, q);
       const Sample c = at(q, b);
       const bool now = Curve::fold.in_sense();
       if (!(c.on && ahead(b, c, reach))) {
@@ -2027,6 +2019,7 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
         look(b, c);
         return false;
       }
+      const double gone = steps - begun;  // to b
       steps += reach / Policy::kTryStep;
       passed.add(c, false);
       worst = std::max(worst, std::abs(c.left));
@@ -2034,7 +2027,12 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
       keeps = now;
       if (is_solution(c)) keep(c);
       look(b, c);
-      if (k > 1 && back(origin, b)) return true;
+      if (gone >= kAround && back(origin, b)) return true;
+      if (gone >= from + kAround && back(settled, b)) return false;
+      if (gone >= kSettled && !(from < kInfinity)) {
+        settled = b;
+        from = gone;
+      }
       std::copy_n(b.still, Fold::kMoving, before);
       b = c;
       last = reach;
@@ -2044,18 +2042,24 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
     return true;
   }
 
+  static void step_on(const Sample& b, const double* before, double turn, double reach, double* q) noexcept {
+    double course[Fold::kMoving], largest = 0.0;
+    std::copy_n(b.q, Arm::kDof, q);
+    for (int i = 0; i < Fold::kMoving; ++i) {
+      course[i] = b.still[i] + turn * (b.still[i] - before[i]);
+      largest = std::max(largest, std::abs(course[i]));
+    }
+    for (int i = 0; i < Fold::kMoving; ++i) q[Fold::kJoints[i]] += reach / largest * course[i];
+  }
+
   int passed_part(const Passed& passed, const Sample& s) noexcept {
     for (int i = 1; i < passed.count && s.on; ++i) {
       const Sample &a = passed.sample[i - 1], &b = passed.sample[i];
       if (passed.first[i]) continue;
-      double along = 0.0, square = 0.0, chord[Fold::kMoving], way[Fold::kMoving], q[Arm::kDof];
+      double chord[Fold::kMoving], way[Fold::kMoving], q[Arm::kDof];
       way_to(a, s.q, way);
-      for (int k = 0; k < Fold::kMoving; ++k) {
-        chord[k] = b.q[Fold::kJoints[k]] - a.q[Fold::kJoints[k]];
-        along += chord[k] * way[k];
-        square += chord[k] * chord[k];
-      }
-      const double share = along / square;
+      way_to(a, b.q, chord);
+      const double share = Fold::dot(chord, way) / Fold::dot(chord, chord);
       if (!(share > -kOver && share < 1.0 + kOver && on_line(way, share, chord, kBeside))) continue;
       between(a, b, share, q);
       for (int round = 0; round < kRounds; ++round) {
@@ -2082,33 +2086,22 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
   }
 
   static bool ahead(const Sample& a, const Sample& b, double reach) noexcept {
-    double along = 0.0, square = 0.0, same = 0.0;
-    for (int k = 0; k < Fold::kMoving; ++k) {
-      const double way = b.q[Fold::kJoints[k]] - a.q[Fold::kJoints[k]];
-      along += way * a.still[k];
-      square += way * way;
-      same += a.still[k] * b.still[k];
-    }
-    return along > 0.5 * reach && along * along > 0.5 * square && same > kAhead;
+    double way[Fold::kMoving];
+    const double along = way_to(a, b.q, way);
+    return along > 0.5 * reach && along * along > 0.5 * Fold::dot(way, way) && Fold::dot(a.still, b.still) > kAhead;
   }
 
   static bool back(const Sample& a, const Sample& b) noexcept {
-    double way[Fold::kMoving], same = 0.0;
+    double way[Fold::kMoving];
     const double along = way_to(a, b.q, way);
-    for (int k = 0; k < Fold::kMoving; ++k) {
-      if (!(std::abs(way[k]) < 0.75 * Policy::kTryStep)) return false;
-      same += a.still[k] * b.still[k];
-    }
-    return same > kSameWay && on_line(way, along, a.still, kBeside);
+    for (const double x : way)
+      if (!(std::abs(x) < 0.75 * Policy::kTryStep)) return false;
+    return Fold::dot(a.still, b.still) > kSameWay && on_line(way, along, a.still, kBeside);
   }
 
   static double way_to(const Sample& a, const double* q, double (&way)[Fold::kMoving]) noexcept {
-    double along = 0.0;
-    for (int k = 0; k < Fold::kMoving; ++k) {
-      way[k] = SolutionRows<Arm>::change(Fold::kJoints[k], a.q, q);
-      along += way[k] * a.still[k];
-    }
-    return along;
+    for (int k = 0; k < Fold::kMoving; ++k) way[k] = SolutionRows<Arm>::change(Fold::kJoints[k], a.q, q);
+    return Fold::dot(way, a.still);
   }
 
   static bool on_line(const double* way, double along, const double* direction, double bound) noexcept {
@@ -2731,6 +2724,10 @@ template <class Arm> struct NearestRow {
     return at.cost;
   }
 
+  static void hold(const Options& options, double* q) noexcept {
+    for (std::size_t k = 0; k < Arm::kFreeJoints.size(); ++k) q[Arm::kFreeJoints[k]] = options.free[k];
+  }
+
  private:
   static void take_better(const double* q, double cost, double* best, double& least) noexcept {
     if (!(cost < least)) return;
@@ -2756,10 +2753,6 @@ template <class Arm> struct NearestRow {
       q[j] = low + std::modf(0.5 + (i + 1) * step, &whole) * (high - low);
     }
     hold(options, q);
-  }
-
-  static void hold(const Options& options, double* q) noexcept {
-    for (std::size_t k = 0; k < Arm::kFreeJoints.size(); ++k) q[Arm::kFreeJoints[k]] = options.free[k];
   }
 
   static double step(const Chords& at, bool limits, double damping, double* q) noexcept {
@@ -2852,7 +2845,7 @@ template <class Arm> struct CarefulSolve {
   static void take_start(const Options& options, int turn, double* q) noexcept {
     for (int j = 0; j < Arm::kDof; ++j)
       q[j] = (options.seed ? options.seed->data()[j] : 0.0) + (Arm::kPeriod[j] > 0.0 ? turn * Policy::kTryStep : 0.0);
-    for (std::size_t k = 0; k < Arm::kFreeJoints.size(); ++k) q[Arm::kFreeJoints[k]] = options.free[k];
+    NearestRow<Arm>::hold(options, q);
   }
 
   static bool add_led_to(const Aim& aim, const double* start, typename NearContinuum<Arm>::Passed& passed,

@@ -95,14 +95,10 @@ template <class Arm> struct CurveParts : CurveSamples<Arm> {
 
   // The inner two coefficients, after Bernstein, of the cubic through values and slopes.
   static void take_inner(const Sample& a, const Sample& b, double (&inner)[2]) noexcept {
-    double rise = 0.0, fall = 0.0;
-    for (int k = 0; k < Fold::kMoving; ++k) {
-      const double step = b.q[Fold::kJoints[k]] - a.q[Fold::kJoints[k]];
-      rise += a.slope * a.still[k] * step;
-      fall += b.slope * b.still[k] * step;
-    }
-    inner[0] = a.left + rise / 3.0;
-    inner[1] = b.left - fall / 3.0;
+    double way[Fold::kMoving];
+    Curve::take_chord(a, b, way);
+    inner[0] = a.left + a.slope * Fold::dot(way, a.still) / 3.0;
+    inner[1] = b.left - b.slope * Fold::dot(way, b.still) / 3.0;
   }
 
   // Where that cubic vanishes between the samples, at which it has two signs: by Newton's method from a share of the way,

@@ -68,21 +68,19 @@ template <class Arm> struct CurveSamples {
     for (double& x : s.out) x = -x;
   }
 
+  static void take_chord(const Sample& a, const Sample& b, double* way) noexcept {
+    for (int k = 0; k < Fold::kMoving; ++k) way[k] = b.q[Fold::kJoints[k]] - a.q[Fold::kJoints[k]];
+  }
+
   // By the cubic through two configurations along their still directions (Hermite).
   static void between(const Sample& a, const Sample& b, double share, double* q) noexcept {
-    double along = 0.0, beyond = 0.0;
-    for (int k = 0; k < Fold::kMoving; ++k) {
-      const double way = b.q[Fold::kJoints[k]] - a.q[Fold::kJoints[k]];
-      along += way * a.still[k];
-      beyond += way * b.still[k];
-    }
+    double way[Fold::kMoving];
+    take_chord(a, b, way);
+    const double along = Fold::dot(way, a.still), beyond = Fold::dot(way, b.still);
     const double rest = 1.0 - share, first = share * rest * rest, last = -share * share * rest;
     std::copy_n(a.q, Arm::kDof, q);
-    for (int k = 0; k < Fold::kMoving; ++k) {
-      const int j = Fold::kJoints[k];
-      const double way = b.q[j] - a.q[j];
-      q[j] += share * way + first * (along * a.still[k] - way) + last * (beyond * b.still[k] - way);
-    }
+    for (int k = 0; k < Fold::kMoving; ++k)
+      q[Fold::kJoints[k]] += share * way[k] + first * (along * a.still[k] - way[k]) + last * (beyond * b.still[k] - way[k]);
   }
 
  private:
@@ -94,12 +92,7 @@ template <class Arm> struct CurveSamples {
 
   // Goes to where two corrections that converge slowly lead in the end (Aitken 1926), if they do.
   static bool leap(const double* before, const double* across, double* q) noexcept {
-    double along = 0.0, square = 0.0;
-    for (int k = 0; k < Fold::kMoving; ++k) {
-      along += across[k] * before[k];
-      square += before[k] * before[k];
-    }
-    const double ratio = along / square;
+    const double ratio = Fold::dot(across, before) / Fold::dot(before, before);
     if (!(std::abs(ratio) < kSteady)) return false;
     for (int k = 0; k < Fold::kMoving; ++k) q[Fold::kJoints[k]] += ratio / (1.0 - ratio) * across[k];
     return true;

@@ -138,6 +138,12 @@ template <class Arm> struct FoldPair {
     return {slope, along, shift};
   }
 
+  static double dot(const double* u, const double* v) noexcept {
+    double sum = 0.0;
+    for (int k = 0; k < kMoving; ++k) sum += u[k] * v[k];
+    return sum;
+  }
+
   // How a direction moves an entry of the pose's error.
   static double flow_of(const PoseError<Arm>& at, int e, const Vector& along) noexcept {
     double flow = 0.0;

@@ -76,6 +76,7 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
 
  private:
   static constexpr int kMost = 96;
+  static constexpr double kSettled = 4.0, kAround = 2.0;  // steps behind which it is on its curve, and it may be back
   static constexpr int kLeast = 4;
   static constexpr int kRounds = 3;
   static constexpr double kBeside = 0.06;
@@ -154,24 +155,21 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
   }
 
   // On from a sample, the fastest joint by Policy::kTryStep from one to the next, or by less where corrections converge
-  // from there alone; whether it comes back to where it began.
+  // from there alone; whether it comes back to where it began. If that is beside the curve it ends where it comes back to a
+  // sample that has settled.
   bool follow(const Sample& first, double sense, bool keeps, double& worst, Passed& passed) noexcept {
     Sample b = first;
     if (sense < 0.0) Curve::turn_round(b);
     const Sample origin = b;
     if (is_solution(b)) keep(b);
     passed.add(b, true);
-    double reach = Policy::kTryStep, last = reach, before[Fold::kMoving];
+    Sample settled;
+    const double begun = steps;
+    double reach = Policy::kTryStep, last = reach, from = kInfinity, before[Fold::kMoving];  // from: where it settled
     std::copy_n(b.still, Fold::kMoving, before);
     for (int k = 0; k < kMost && samples > 0; ++k) {
-      double q[Arm::kDof], course[Fold::kMoving], largest = 0.0;
-      const double turn = 0.5 * reach / last;
-      std::copy_n(b.q, Arm::kDof, q);
-      for (int i = 0; i < Fold::kMoving; ++i) {
-        course[i] = b.still[i] + turn * (b.still[i] - before[i]);
-        largest = std::max(largest, std::abs(course[i]));
-      }
-      for (int i = 0; i < Fold::kMoving; ++i) q[Fold::kJoints[i]] += reach / largest * course[i];
+      double q[Arm::kDof];
+      step_on(b, before, 0.5 * reach / last, reach, q);
       const Sample c = at(q, b);
       const bool now = Curve::fold.in_sense();
       if (!(c.on && ahead(b, c, reach))) {
@@ -186,6 +184,7 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
         look(b, c);
         return false;
       }
+      const double gone = steps - begun;  // to b
       steps += reach / Policy::kTryStep;
       passed.add(c, false);
       worst = std::max(worst, std::abs(c.left));
@@ -193,7 +192,12 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
       keeps = now;
       if (is_solution(c)) keep(c);
       look(b, c);
-      if (k > 1 && back(origin, b)) return true;
+      if (gone >= kAround && back(origin, b)) return true;
+      if (gone >= from + kAround && back(settled, b)) return false;
+      if (gone >= kSettled && !(from < kInfinity)) {
+        settled = b;
+        from = gone;
+      }
       std::copy_n(b.still, Fold::kMoving, before);
       b = c;
       last = reach;
@@ -203,19 +207,26 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
     return true;
   }
 
+  // The place a step on from a sample, as the curve turned since the direction `before`.
+  static void step_on(const Sample& b, const double* before, double turn, double reach, double* q) noexcept {
+    double course[Fold::kMoving], largest = 0.0;
+    std::copy_n(b.q, Arm::kDof, q);
+    for (int i = 0; i < Fold::kMoving; ++i) {
+      course[i] = b.still[i] + turn * (b.still[i] - before[i]);
+      largest = std::max(largest, std::abs(course[i]));
+    }
+    for (int i = 0; i < Fold::kMoving; ++i) q[Fold::kJoints[i]] += reach / largest * course[i];
+  }
+
   // The end of the part of passed curves that goes through a sample, or 0.
   int passed_part(const Passed& passed, const Sample& s) noexcept {
     for (int i = 1; i < passed.count && s.on; ++i) {
       const Sample &a = passed.sample[i - 1], &b = passed.sample[i];
       if (passed.first[i]) continue;
-      double along = 0.0, square = 0.0, chord[Fold::kMoving], way[Fold::kMoving], q[Arm::kDof];
+      double chord[Fold::kMoving], way[Fold::kMoving], q[Arm::kDof];
       way_to(a, s.q, way);
-      for (int k = 0; k < Fold::kMoving; ++k) {
-        chord[k] = b.q[Fold::kJoints[k]] - a.q[Fold::kJoints[k]];
-        along += chord[k] * way[k];
-        square += chord[k] * chord[k];
-      }
-      const double share = along / square;
+      way_to(a, b.q, chord);
+      const double share = Fold::dot(chord, way) / Fold::dot(chord, chord);
       if (!(share > -kOver && share < 1.0 + kOver && on_line(way, share, chord, kBeside))) continue;
       between(a, b, share, q);
       for (int round = 0; round < kRounds; ++round) {
@@ -245,35 +256,24 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
 
   // Whether the curve goes on from a sample to another, and not back.
   static bool ahead(const Sample& a, const Sample& b, double reach) noexcept {
-    double along = 0.0, square = 0.0, same = 0.0;
-    for (int k = 0; k < Fold::kMoving; ++k) {
-      const double way = b.q[Fold::kJoints[k]] - a.q[Fold::kJoints[k]];
-      along += way * a.still[k];
-      square += way * way;
-      same += a.still[k] * b.still[k];
-    }
-    return along > 0.5 * reach && along * along > 0.5 * square && same > kAhead;
+    double way[Fold::kMoving];
+    const double along = way_to(a, b.q, way);
+    return along > 0.5 * reach && along * along > 0.5 * Fold::dot(way, way) && Fold::dot(a.still, b.still) > kAhead;
   }
 
   // Whether the curve is at a sample of it again, and not at another part that is near.
   static bool back(const Sample& a, const Sample& b) noexcept {
-    double way[Fold::kMoving], same = 0.0;
+    double way[Fold::kMoving];
     const double along = way_to(a, b.q, way);
-    for (int k = 0; k < Fold::kMoving; ++k) {
-      if (!(std::abs(way[k]) < 0.75 * Policy::kTryStep)) return false;
-      same += a.still[k] * b.still[k];
-    }
-    return same > kSameWay && on_line(way, along, a.still, kBeside);
+    for (const double x : way)
+      if (!(std::abs(x) < 0.75 * Policy::kTryStep)) return false;
+    return Fold::dot(a.still, b.still) > kSameWay && on_line(way, along, a.still, kBeside);
   }
 
   // The way from a sample to a configuration but for whole turns, and how far it goes along the still direction.
   static double way_to(const Sample& a, const double* q, double (&way)[Fold::kMoving]) noexcept {
-    double along = 0.0;
-    for (int k = 0; k < Fold::kMoving; ++k) {
-      way[k] = SolutionRows<Arm>::change(Fold::kJoints[k], a.q, q);
-      along += way[k] * a.still[k];
-    }
-    return along;
+    for (int k = 0; k < Fold::kMoving; ++k) way[k] = SolutionRows<Arm>::change(Fold::kJoints[k], a.q, q);
+    return Fold::dot(way, a.still);
   }
 
   // Whether a way goes so far in a direction, and less than a bound beside that.

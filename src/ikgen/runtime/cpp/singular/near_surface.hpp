@@ -65,16 +65,10 @@ template <class Arm> struct NearSurface {
     bool on;
   };
 
-  static double dot(const Vector& a, const Vector& b) noexcept {
-    double sum = 0.0;
-    for (int k = 0; k < kMoving; ++k) sum += a[k] * b[k];
-    return sum;
-  }
-
   // Makes directions units at right angles.
   static void straighten(Vector (&still)[2]) noexcept {
     for (int i = 0; i < 2; ++i) {
-      const double along = i == 0 ? 0.0 : dot(still[0], still[1]);
+      const double along = i == 0 ? 0.0 : Fold::dot(still[0], still[1]);
       for (int k = 0; k < kMoving && i > 0; ++k) still[1][k] -= along * still[0][k];
       make_unit(still[i]);
     }

@@ -88,7 +88,7 @@ template <class Arm> struct CarefulSolve {
   static void take_start(const Options& options, int turn, double* q) noexcept {
     for (int j = 0; j < Arm::kDof; ++j)
       q[j] = (options.seed ? options.seed->data()[j] : 0.0) + (Arm::kPeriod[j] > 0.0 ? turn * Policy::kTryStep : 0.0);
-    for (std::size_t k = 0; k < Arm::kFreeJoints.size(); ++k) q[Arm::kFreeJoints[k]] = options.free[k];
+    NearestRow<Arm>::hold(options, q);
   }
 
   // Adds what Newton steps from a row lead to, or else the solutions on a curve through it that is a continuum of the arm's

@@ -45,7 +45,8 @@ template <class Arm> class CompensatedRows {
   static constexpr int kRounds = 2;
   static constexpr double kShare = 0.2;  // of the least product of two singular values, as `refine` takes it
   static constexpr double kAside = 0.1;  // rad or m: what moves them farther there may lead to others as well
-  static constexpr double kRemote = 2.0;  // singular value over the way to a fold: a second singularity is farther
+  static constexpr double kRemote = 2.0;  // singular value over the way from there: a second singularity is farther
+  static constexpr int kHalts = 3;  // on the way to a fold, its ends included
   static constexpr double kTogether = 0.3;  // rad or m: nearer rows may be of one fold
 
   const Aim& aim;
@@ -180,7 +181,7 @@ template <class Arm> class CompensatedRows {
       const auto known = [](const double*, double) noexcept { return false; };
       const auto led = fold.approach(begin, side == 0 ? 1.0 : -1.0, q, known);
       const double moved = Pair::farthest(first, q);
-      if (!(moved < kTogether) || !fold.others_above(kRemote * moved, q)) return false;
+      if (!(moved < kTogether) || !alone_on(fold, q, first, moved)) return false;
       if (led == Fold::Led::Between) return side == 0;
       if (!NewtonRefinement<Arm>::refine(q, aim) || !Pair::within(kTogether, start, q)) return false;
     }
@@ -188,6 +189,16 @@ template <class Arm> class CompensatedRows {
     for (const double* q : ends) {
       if (SingularValue<Arm>::below(q, Arm::Policy::kSingularBelow)) return false;
       Row::add(out, q, false);
+    }
+    return true;
+  }
+
+  // Whether there is no second singularity from a fold to where the closed form has its row, which is so far away.
+  static bool alone_on(const Fold& fold, const double* q, const double* first, double moved) noexcept {
+    for (int i = 0; i < kHalts; ++i) {
+      double halt[Arm::kDof];
+      for (int j = 0; j < Arm::kDof; ++j) halt[j] = q[j] + i * (Row::change(j, q, first) / (kHalts - 1));
+      if (!fold.others_above(kRemote * moved / (2 * (kHalts - 1)), halt)) return false;
     }
     return true;
   }

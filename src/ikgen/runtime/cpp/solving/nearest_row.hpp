@@ -139,6 +139,10 @@ template <class Arm> struct NearestRow {
     return at.cost;
   }
 
+  static void hold(const Options& options, double* q) noexcept {
+    for (std::size_t k = 0; k < Arm::kFreeJoints.size(); ++k) q[Arm::kFreeJoints[k]] = options.free[k];
+  }
+
  private:
   static void take_better(const double* q, double cost, double* best, double& least) noexcept {
     if (!(cost < least)) return;
@@ -167,10 +171,6 @@ template <class Arm> struct NearestRow {
       q[j] = low + std::modf(0.5 + (i + 1) * step, &whole) * (high - low);
     }
     hold(options, q);
-  }
-
-  static void hold(const Options& options, double* q) noexcept {
-    for (std::size_t k = 0; k < Arm::kFreeJoints.size(); ++k) q[Arm::kFreeJoints[k]] = options.free[k];
   }
 
   // One step, in which joints at a limit that it would pass stay; what linear equations have it gain.

@@ -25,7 +25,8 @@ _ROUNDS = 2
 _SHARE = 0.2  # of the least product of two singular values below which rows are strained
 _ASIDE = 0.1  # rad or m: what moves rows farther there may lead to others as well
 _TOGETHER = 0.3  # rad or m: nearer rows may be of one fold
-_REMOTE = 2.0  # singular value over the way to a fold: a second singularity is farther
+_REMOTE = 2.0  # singular value over the way from there: a second singularity is farther
+_HALTS = 3  # on the way to a fold, its ends included
 _NONE = 1e-8  # error (rad, m over the arm's size) that is left where there is no solution
 
 
@@ -140,10 +141,13 @@ def _take_ends(arm: Arm, rows: _Rows, pose: Index, one: Index, other: Index) -> 
     lane, aim = np.repeat(one, 2), aims(arm, rows.T, rows.held)[owner]
     start = rows.q[owner, lane]
     fold, _ = approach(arm, start, aim, side)
-    moved = np.abs(differences(arm, rows.first[owner, lane], fold)).max(axis=1)
-    _, slope = linearized(arm, fold, aim)
-    remote = np.linalg.svd(slope, compute_uv=False)[:, -2] > _REMOTE * moved
-    remote &= moved < _TOGETHER
+    way = differences(arm, fold, rows.first[owner, lane])
+    moved = np.abs(way).max(axis=1)
+    remote = moved < _TOGETHER
+    for i in range(_HALTS):  # is there a second singularity from the fold to the closed form's row?
+        _, slope = linearized(arm, fold + i * (way / (_HALTS - 1)), aim)
+        farther = _REMOTE * moved / (2 * (_HALTS - 1))
+        remote &= np.linalg.svd(slope, compute_uv=False)[:, -2] > farther
     q, error, sigma = ends_of(arm, fold, aim)
     near = np.abs(differences(arm, start, q)).max(axis=1) < _TOGETHER
     good = near & (error < arm.policy.arrived) & (sigma >= arm.policy.singular_below)
