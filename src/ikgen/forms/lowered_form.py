@@ -227,9 +227,12 @@ def natural_size(e: Expr) -> float:
     return float(np.max(np.abs(finite))) if finite.size else 1.0
 
 
-def divisor_of(g: ExpressionGraph, value: Expr, tol: Tolerances, power: int = 1) -> Divisor:
+def divisor_of(
+    g: ExpressionGraph, value: Expr, tol: Tolerances, power: int = 1, *, squared: bool = False
+) -> Divisor:
     """An expression as a divisor; `power` 2 where it is a sum of squares, whose bound leaves a direction
-    more than half of the digits."""
+    more than half of the digits. One that is such a sum times a number may be `squared`: as small as these
+    before it marks a continuum."""
     if value.is_fixed:
         return Divisor(value)
     size = natural_size(value)
@@ -240,7 +243,8 @@ def divisor_of(g: ExpressionGraph, value: Expr, tol: Tolerances, power: int = 1)
     if tol.double is not None and regular is not None and power == 1:
         least = g.select(tol.double, g.const(_HALF_OF_DIGITS * size), regular.args[1])
         regular = g.binary("gt", magnitude, least)
-    clear = found.above(g, tol.flag if power == 1 else tol.norm)
+    bound = tol.flag if power == 1 else tol.norm
+    clear = found.above(g, min(bound, tol.norm**2) if squared and power == 1 else bound)
     assert regular is not None
     return Divisor(g.select(regular, value, g.one), regular, clear, magnitude, size, power)
 

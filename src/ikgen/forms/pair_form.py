@@ -27,6 +27,13 @@ def _alike(one: Array, other: Array, size: float) -> bool:
     return bool(np.all(np.abs(one - other) <= _ALIKE * size))
 
 
+def _core(e: Expr) -> Expr:
+    """What is left of an expression without its constant factors and its sign."""
+    while e.op in ("neg", "mul") and (e.op == "neg" or any(one.is_fixed for one in e.args)):
+        e = e.args[-1] if e.args[0].is_fixed else e.args[0]
+    return e
+
+
 @dataclass(frozen=True, slots=True)
 class LinearPair(Form):
     """`a1 cos + b1 sin = c1`, `a2 cos + b2 sin = c2` (IKBT, rule-based solver 5)."""
@@ -55,6 +62,16 @@ class LinearPair(Form):
             if all(_alike(x.probe, s * y.probe, x.scale + y.scale) for x, s, y in pairs):
                 return sign
         return 0
+
+    @property
+    def turns_scaled(self) -> bool:
+        """Whether the second row is the first one turned by a right angle, times a number: the determinant
+        is a square then, times that number."""
+        if _core(self.a1) is not _core(self.b2) or _core(self.b1) is not _core(self.a2):
+            return False
+        a1, b1, a2, b2 = (x.probe for x in self.divisor_parts)
+        size = (self.a1.scale + self.b1.scale) * (self.a2.scale + self.b2.scale)
+        return _alike(a1 * a2, -b1 * b2, size)
 
     @property
     def is_determinant(self) -> bool:
@@ -90,7 +107,7 @@ class LinearPair(Form):
             det = g.dot([self.a1, self.a2], [self.a1, self.a2])
             x = g.dot([self.a1, self.a2], [self.c1, self.c2])
             y = y if sign > 0 else g.neg(y)
-        divisor = divisor_of(g, det, tolerances, 2 if sign else 1)
+        divisor = divisor_of(g, det, tolerances, 2 if sign else 1, squared=self.turns_scaled)
         if det.is_fixed:
             return LoweredForm((g.div(x, det), g.div(y, det)), divisor, None, 1)
         inverse = g.div(g.one, divisor.value)
