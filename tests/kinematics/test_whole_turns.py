@@ -219,17 +219,37 @@ def test_values_are_looked_for_on_the_circle_or_inside_the_limits(tmp_path: Path
     assert range_of(alone, 0) == circle
 
 
+@pytest.mark.parametrize("limit", [2.0 * math.pi, 6.2832, 6.28, 20.0])
+def test_turns_that_limits_hold_all_of_come_round_together(tmp_path: Path, limit: float) -> None:
+    """At both ends of limits that span what comes round the arm is the same."""
+    dh = geared(tmp_path, "-1.5", -limit, limit)
+    check_couplings(dh)
+    turn = 2.0 * math.pi
+    assert period_of(dh, 1) == 2.0 * turn and range_of(dh, 1) == (-math.pi, math.pi)
+    made = generate(request(tmp_path / "elbow.urdf"), Outputs(out=tmp_path, samples=100))
+    assert all(report.passed for report in made.reports.values())
+    arm = import_text((tmp_path / "elbow_ik.py").read_text(), tmp_path)
+    for value in (-limit, limit, 0.4 - turn, 0.4, 2.1):
+        q = np.array([0.3, value])
+        rows = arm.solve(arm.forward(q), seed=q).q
+        assert np.abs(rows[0] - q).max() < 1e-7
+        apart = np.abs(rows[:, None, 1] - rows[None, :, 1]) / (2.0 * turn)
+        once = np.abs(apart - np.round(apart)) < 1e-6
+        alike = np.abs(np.sin(0.5 * (rows[:, None, 0] - rows[None, :, 0]))) < 1e-6
+        assert (once & alike).sum() == len(rows)
+
+
 def test_what_turns_together_is_named(tmp_path: Path) -> None:
     """Of rows that come round together after more than the limits span, or in no ratio only together."""
     with pytest.raises(UnsolvedChainError) as caught:
-        check_couplings(geared(tmp_path, "0.8", -20.0, 20.0))
+        check_couplings(geared(tmp_path, "0.83", -400.0, 400.0))
     assert "'shoulder' and 'elbow' come round together" in caught.value.message
-    assert "every 31.4159 of 'shoulder', and the limits span 40" in caught.value.message
-    text = (tmp_path / "elbow.urdf").read_text().replace("0.8", "0.1234567")
+    assert "every 628.319 of 'shoulder', and the limits span 800" in caught.value.message
+    text = (tmp_path / "elbow.urdf").read_text().replace("0.83", "0.1234567")
     joint = '<joint name="waist" type="revolute">'
     mimic = f'{joint}<mimic joint="shoulder" multiplier="0.7654321"/>'
     (tmp_path / "elbow.urdf").write_text(
-        text.replace(joint, mimic).replace("-20.0", "-2").replace("20.0", "2")
+        text.replace(joint, mimic).replace("-400.0", "-2").replace("400.0", "2")
     )
     with pytest.raises(UnsolvedChainError) as caught:
         check_couplings(read(request(tmp_path / "elbow.urdf")).dh)

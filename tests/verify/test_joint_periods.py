@@ -22,8 +22,11 @@ def oracle(screws: list[list[float]], A: list[list[float]]) -> SimpleNamespace:
     return made
 
 
-def period(screws: list[list[float]], A: list[list[float]]) -> NDArray[np.float64]:
-    found: NDArray[np.float64] = Oracle.period.fget(oracle(screws, A))  # type: ignore[attr-defined]
+def period(
+    screws: list[list[float]], A: list[list[float]], limit: float = 1.0
+) -> NDArray[np.float64]:
+    span = np.full(np.shape(A)[1], 2.0 * limit)
+    found: NDArray[np.float64] = Oracle.periods(oracle(screws, A), span)  # type: ignore[arg-type]
     return found
 
 
@@ -47,6 +50,9 @@ def test_the_slowest_axis_tells_the_period(factors: tuple[float, ...], turns: fl
 
 def test_there_is_none_where_it_takes_several_turns_or_something_slides() -> None:
     assert np.isinf(period([TURNING, TURNING], [[1.0], [1.5]])).all()
+    for limit in (TURN, TURN - 1e-3, np.inf):  # both turns of the joint are inside
+        assert period([TURNING, TURNING], [[1.0], [1.5]], limit)[0] == 2.0 * TURN
+    assert np.isinf(period([TURNING, TURNING], [[1.0], [1.51]], np.inf)).all()
     assert np.isinf(period([TURNING, TURNING], [[0.5], [-1.5]])).all()
     assert np.isinf(period([TURNING, TURNING], [[2.0], [2.5]])).all()
     assert np.isinf(period([SLIDING], [[1.0]])).all()

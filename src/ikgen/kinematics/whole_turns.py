@@ -3,7 +3,8 @@
 A row's angle is `scale * q + offset` and counts modulo 2 pi. Where the variable that stands for a joint
 has the scale ±1 and all rows turn whole multiples of it, `q + 2 pi` is the same configuration, and no
 smaller step is. With another scale the step is `2 pi / |scale|`: a whole turn of the joint is then
-another configuration, or one of several that are the same.
+another configuration, or one of several that are the same. Where that step is several turns, and the limits
+leave out some of them, values are looked for inside the limits alone, and there is no step.
 """
 
 from __future__ import annotations
@@ -22,14 +23,21 @@ _BEYOND = 1e-2
 """How far (rad) beyond its limits values of a joint are looked for: poses that lie on them have rows."""
 
 
+_MOST_ROUND = 60
+"""How many times a row turns, at most, where values are looked for on a circle of several turns."""
+
+
 def period_of(dh: DHChain, joint: int) -> float:
     """How far apart (rad) values of the joint are that are the same configuration; 0 where none are, or
-    where what the joint moves comes round together after several of its turns only."""
+    where what the joint moves comes round together after several turns only, and its limits hold fewer."""
     rows, lead = _rows(dh, joint), dh.lead_row(joint)
-    whole = lead.revolute and all(is_whole(row.scale / lead.scale) for row in rows)
-    if not whole or not (_alike(dh, joint) or abs(lead.scale) >= 1.0 - _WHOLE):
+    ratios = [row.scale / lead.scale for row in rows]
+    if not lead.revolute or not all(map(is_whole, ratios)):
         return 0.0
-    return 2.0 * math.pi / abs(lead.scale)
+    period, limits = 2.0 * math.pi / abs(lead.scale), dh.joints[joint].limits
+    short = _alike(dh, joint) or abs(lead.scale) >= 1.0 - _WHOLE
+    around = limits.upper - limits.lower + 2.0 * _BEYOND >= period
+    return period if short or (around and max(map(abs, ratios)) <= _MOST_ROUND) else 0.0
 
 
 def middle_of(dh: DHChain, joint: int) -> float:

@@ -199,7 +199,7 @@ def arm_under_test(
     """Gather what the checks need; `limits` are (lower, upper), each (dof,), in rad or m. `held` names what
     is held: joints, and last the arm `angle` where there is one."""
     lower, upper = (np.asarray(bound, dtype=float) for bound in limits)
-    screws, period = oracle.screws, oracle.period
+    screws, period = oracle.screws, oracle.periods(upper - lower)
     low, high = _sampled_range(lower, upper, period)
     free = tuple(oracle.joint_names.index(name) for name in held if name in oracle.joint_names)
     active = tuple(i for i in range(oracle.dof) if i not in free)

@@ -20,6 +20,9 @@ from ikgen.verify.screws import ScrewChain
 __all__ = ["Oracle", "load_pinocchio"]
 
 _WHOLE = 1e-12
+_MOST_ROUND, _BEYOND = 60, 2e-2
+"""Of a circle of several turns: how many times what turns on it does so at most, and by how much (rad) the
+limits may span less of it."""
 
 
 def load_pinocchio() -> Any:
@@ -70,21 +73,21 @@ class Oracle:
         sliding = [~np.any(s[3:]) for s in self.screws.screws]
         return np.asarray(~np.any(self.screws.A[sliding] != 0, axis=0))
 
-    @property
-    def period(self) -> Array:
+    def periods(self, span: Array) -> Array:
         """(dof,): the least step (rad) between values of a joint that are the same configuration: a whole
-        turn, more or less where only mimic joints turn with it; infinite where there is none, or where it
-        is more than a turn and what turns does not do so alike."""
+        turn, more or less where mimic joints turn with it; infinite where there is none, or where it is
+        more than a turn, what turns does not do so alike, and `span` (dof,), between limits, is less."""
         A = np.abs(self.screws.A)
         least = np.min(np.where(A > 0.0, A, np.inf), axis=0, initial=np.inf)
         least = np.where(np.isinf(least), 1.0, least)  # a joint that moves nothing
         alike = np.all((A == 0.0) | (np.abs(A / least - 1.0) <= _WHOLE), axis=0)
         period = np.where(self.revolute & alike, 2.0 * np.pi / least, np.inf)
-        for turns in range(int(np.max(least, initial=0.0) + _WHOLE), 0, -1):
-            rows = turns * A / least
+        for turns in range(_MOST_ROUND, 0, -1):
+            rows, after = turns * A / least, 2.0 * np.pi * turns / least
             whole = np.all(np.abs(rows - np.round(rows)) <= _WHOLE, axis=0)
-            short = turns <= least + _WHOLE
-            period = np.where(self.revolute & whole & short, 2.0 * np.pi * turns / least, period)
+            around = span + _BEYOND >= after
+            short = (turns <= least + _WHOLE) | (around & np.all(rows <= _MOST_ROUND, axis=0))
+            period = np.where(self.revolute & whole & short, after, period)
         return np.asarray(period)
 
     def _wire(self, wiring: Mapping[str, tuple[int, float, float]]) -> None:
