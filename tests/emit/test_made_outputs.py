@@ -257,6 +257,9 @@ def test_what_was_chosen_to_be_held_is_said_with_what_came_next() -> None:
     behind = replace(both, refused=(), behind=("a narrower range", ""))
     assert behind.words.endswith("; others: q2 (a narrower range), q4 and q5")
     torso = replace(plain, shared=("yaw",))
-    assert torso.words.endswith("; yaw moves, and other arms with it: --free NAME holds one")
+    carries = (
+        "; yaw carries other branches of the robot too: --free NAME holds it in place of another"
+    )
+    assert torso.words.endswith(carries)
     torso = replace(plain, shared=("yaw", "lift"))
-    assert "; yaw and lift move, and other arms with them: " in torso.words
+    assert "; yaw and lift carry other branches of the robot too: " in torso.words

@@ -9,7 +9,7 @@ from ikgen.generation.result import branches_beside, rounding
 from ikgen.model.counted import counted, listed
 
 if TYPE_CHECKING:
-    from ikgen.emit.derivation import Derivation, Reading
+    from ikgen.emit.derivation import Derivation
     from ikgen.generation.generate import Generation
     from ikgen.model.dh import DHChain
     from ikgen.verify.verification_report import VerificationReport
@@ -68,25 +68,8 @@ def _coupled(derivation: Derivation) -> list[tuple[str, str]]:
     reading = derivation.reading
     why = " (equal stages of a telescope)" if reading.coupled else ""  # which come last
     beyond = [("coupled", "; ".join(reading.relations) + why)] if reading.relations else []
-    own = _followers(reading)
+    own = reading.followers
     return [("follow", f"{'; '.join(own)} (as in the file)"), *beyond] if own else beyond
-
-
-def _followers(reading: Reading) -> list[str]:
-    """The joints that follow others by the file itself (`JOINT=SOURCE*k+c`)."""
-    from ikgen.model.joint_relation import Mimic
-
-    chain = reading.chain
-    if chain is None:
-        return []
-    joints = [joint.name for joint in chain.joints]
-    told = {text.partition("=")[0] for text in reading.relations}
-    others = {*joints, *reading.parts, *told}
-    return [
-        f"{axis.name}={Mimic(joints[axis.driver], axis.multiplier, axis.offset).words}"
-        for axis in chain.file_axes or chain.axes
-        if axis.name not in others
-    ]
 
 
 def _motors(dh: DHChain) -> list[tuple[str, str]]:

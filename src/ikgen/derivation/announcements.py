@@ -25,7 +25,7 @@ def announcements(derivation: Derivation) -> tuple[str, ...]:
         _passed_over(derivation),
         _over_constrained(derivation) or _tilting(derivation),
         tip_on_axis(reading.dh, derivation.task, links) if derivation.chosen else "",
-        lost_freedom(reading, ()) if derivation.held else "",
+        lost_freedom(reading, (), derivation.held.joints) if derivation.held else "",
         idle_warning(reading.dh, derivation.task),
     )
     return (*reading.source.warnings, *filter(None, told))
@@ -73,7 +73,7 @@ def _over_constrained(derivation: Derivation) -> str:
             smaller = "No smaller task asks for just what the joints can move; "
     elif needs_held(dh, task):
         these = " ".join(f"--free {name}" for name in dh.free)
-        smaller += f"without {these} the arm can do it; "
+        smaller += f"without {these} there is a task that all its joints can do; "
     return (
         f"OVER-CONSTRAINED: the task '{task.name}' fixes {fixed} freedoms and "
         f"{counted(moving, 'joint move')}: solve() answers only poses that the arm can take to rounding, "

@@ -126,4 +126,5 @@ def _module(
         plan=plan,
         maintainer=request.maintainer,
         license=request.license,
+        followers=(*reading.followers, *reading.relations),
     )

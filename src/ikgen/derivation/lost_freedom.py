@@ -20,23 +20,26 @@ _MOST = 6
 """Joints of an arm of which each may have a freedom of its own: of more it is no surprise."""
 
 
-def lost_freedom(reading: Reading, held: Collection[str]) -> str:
+def lost_freedom(reading: Reading, asked: Collection[str], chosen: Collection[str] = ()) -> str:
     """Which joints of an arm with six at most move its tip in fewer ways than they are, wherever they
-    stand, and why, where their axes say it; "" where all are independent, where one of these is `held`
-    because it was asked for, or where a warning of the file says so."""
+    stand, and why, where their axes say it; "" where all are independent, where one of these is held
+    because it was `asked` for, or where a warning of the file says so. Some were `chosen` to be held."""
     dh = reading.dh
     found = _dependent(dh) if dh.dof <= _MOST else None
     if found is None or any(one.kind is OddityKind.ENDLESS for one in reading.source.warnings):
         return ""
     joints, ways = found
-    if not {dh.joints[j].name for j in joints}.isdisjoint(held):
+    if not {dh.joints[j].name for j in joints}.isdisjoint(asked):
         return ""
+    held = [f"'{dh.joints[j].name}'" for j in joints if dh.joints[j].name in chosen]
     *names, last = (f"'{dh.joints[j].name}'" for j in joints)
     number, reason = counted(ways, "way"), _reason(dh, joints)
+    way_out = f" unless {some_of_them(len(joints) - ways, 'is', 'are')} held or locked"
+    if len(held) >= len(joints) - ways:
+        way_out = f", so {' and '.join(held)} {'is' if len(held) == 1 else 'are'} held"
     return (
         f"joints {', '.join(names)} and {last} move the tip in {number} only"
-        f"{f', as they {reason}' * bool(reason)}: a pose has infinitely many "
-        f"solutions unless {some_of_them(len(joints) - ways, 'is', 'are')} held or locked"
+        f"{f', as they {reason}' * bool(reason)}: a pose has infinitely many solutions{way_out}"
     )
 
 

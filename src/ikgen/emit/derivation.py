@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from itertools import zip_longest
 from typing import TYPE_CHECKING
 
+from ikgen.model.joint_relation import Mimic
+
 if TYPE_CHECKING:
     from ikgen.emit.solver_module import SolverModule
     from ikgen.kinematics.calibrated import Calibration
@@ -36,6 +38,21 @@ class Reading:
     calibration: Calibration | None = None
     relations: tuple[str, ...] = ()
 
+    @property
+    def followers(self) -> tuple[str, ...]:
+        """The joints that follow others by the file itself (`JOINT=SOURCE*k+c`)."""
+        chain = self.chain
+        if chain is None:
+            return ()
+        joints = [joint.name for joint in chain.joints]
+        told = {text.partition("=")[0] for text in self.relations}
+        others = {*joints, *self.parts, *told}
+        return tuple(
+            f"{axis.name}={Mimic(joints[axis.driver], axis.multiplier, axis.offset).words}"
+            for axis in chain.file_axes or chain.axes
+            if axis.name not in others
+        )
+
 
 @dataclass(frozen=True, slots=True)
 class Held:
@@ -63,9 +80,9 @@ class Held:
             listed = [f"{name} ({reason})" if reason else name for name, reason in words]
             line += f"; {kind}: {', '.join(listed)}" if listed else ""
         if self.shared:
-            move, them = ("moves", "it") if len(self.shared) == 1 else ("move", "them")
-            line += f"; {' and '.join(self.shared)} {move}, and other arms with {them}"
-            line += ": --free NAME holds one"
+            carry, it = ("carries", "it") if len(self.shared) == 1 else ("carry", "one of them")
+            line += f"; {' and '.join(self.shared)} {carry} other branches of the robot too"
+            line += f": --free NAME holds {it} in place of another"
         return line
 
 

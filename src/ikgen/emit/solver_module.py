@@ -49,7 +49,8 @@ class SolverModule:
     from, `geometry` is the geometry class in words, `plan` what an elimination needs where the rules did
     not solve the arm. Of a table
     without numbers the constants are left to be filled in, or with `sample` those that its derivation
-    was checked with. `maintainer` (`NAME <EMAIL>`) and `license` are for manifests of packages.
+    was checked with. `followers` are joints that follow others (`JOINT=SOURCE*k+c`, rad or m). `maintainer`
+    (`NAME <EMAIL>`) and `license` are for manifests of packages.
     """
 
     name: str
@@ -66,6 +67,7 @@ class SolverModule:
     sample: bool = False
     maintainer: str | None = None
     license: str | None = None
+    followers: tuple[str, ...] = ()
 
     @property
     def on_joints(self) -> SolverModule:
