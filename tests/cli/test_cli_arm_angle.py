@@ -59,8 +59,8 @@ def test_a_default_is_an_angle(
 @pytest.mark.parametrize(
     ("value", "said"),
     [
-        ("20mm", "--free arm-angle: 'mm' is no unit of a joint that turns"),
-        ("200deg", "--free arm-angle=3.4906585: outside its limits, -3.14159265 to 3.14159265"),
+        ("20mm", "--free arm-angle=20mm: 'mm' is no unit of a joint that turns"),
+        ("200deg", "--free arm-angle=200deg: outside its limits, -3.14159265 to 3.14159265 rad"),
     ],
 )
 @pytest.mark.parametrize("command", ["from-urdf", "view", "reach", "report"])

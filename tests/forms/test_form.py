@@ -333,8 +333,29 @@ def test_a_pair_that_is_a_rotation_divides_by_a_length_squared(sign: int) -> Non
     assert gap(tuple(v.probe for v in found.values), (c, s)).max() < 1e-11
     natural = form.divisor(form.probe, scales(form.coefficients))
     assert natural.shape == (2, PROBES)
+    assert not form.turns_scaled or form.rotation
     other = LinearPair(e, f, form.c1, given(graph, second), given(graph, a), form.c2)
+    assert not other.turns_scaled
     assert other.is_determinant and lowered(other, graph, 1.0).divisor.power == 1
+
+
+def test_a_pair_that_is_a_rotation_but_for_constants_is_a_continuum_where_squares_are() -> None:
+    """The determinant of `[[k a, k b], [-b, a]]` is `k (a^2 + b^2)`, whatever sign the constant has."""
+    graph = ExpressionGraph(PROBES)
+    a, b, c, d = np.random.default_rng(6).uniform(-1.0, 1.0, (4, PROBES))
+    e, f, k = given(graph, a), given(graph, b), graph.const(-0.25)
+    sides = given(graph, c), given(graph, d)
+    form = LinearPair(graph.mul(k, e), graph.mul(k, f), sides[0], graph.neg(f), e, sides[1])
+    other = LinearPair(graph.mul(k, e), graph.mul(k, f), sides[0], e, graph.neg(f), sides[1])
+    assert form.turns_scaled and not form.rotation and not other.turns_scaled
+    exact = Tolerances.for_model_error(0.0)
+    found, plain = (one.lower(graph, graph.one, exact) for one in (form, other))
+    assert isinstance(found, LoweredForm) and isinstance(plain, LoweredForm)
+    assert found.divisor.clear is not None and plain.divisor.clear is not None
+    size = found.divisor.size
+    np.testing.assert_allclose(size, 0.25 * np.max(a**2 + b**2), rtol=1e-12)
+    bounds = [one.divisor.clear.args[1].value / one.divisor.size for one in (found, plain)]
+    assert bounds == pytest.approx([exact.norm**2, exact.flag], rel=1e-9)
 
 
 @settings(deadline=None)

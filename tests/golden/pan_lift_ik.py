@@ -3086,7 +3086,7 @@ class Status(str, Enum):
 class Solutions:
     """Solutions of one pose: `q` (k, DOF), `status`, and `singular` (k,): rows of a continuum; `reason`
     says why a pose is INVALID, or which values of held joints led to no row. As a sequence: its rows.
-    `projected` (k, 2), where it was asked for: m and rad by which rows miss the pose."""
+    `branch` tells them apart in words; `off` is by how much they miss the pose with `project`."""
 
     q: Array
     status: Status

@@ -63,7 +63,18 @@ def test_they_are_entries_that_a_config_reads() -> None:
         ('tip = "tool1"', "arm: no link named 'tool1'", "there is: tool0"),
         ("lock = { elbw = 1.0 }", "arm: no joint named 'elbw'", "elbow_joint"),
         ("lock = { elbow_joint = 10.0 }", "arm: lock = { elbow_joint = 10 }: outside", "inside"),
-        ('args = { a = "b" }', "arm: ur5e.urdf: a URDF file takes no", "give args only with"),
+        (
+            'lock = { elbow_joint = "999 deg" }',
+            'arm: lock = { elbow_joint = "999deg" }: outside',
+            "",
+        ),
+        (
+            'free = { elbow_joint = "9cm" }',
+            "arm: free = { elbow_joint = \"9cm\" }: 'cm' is no",
+            "rad",
+        ),
+        ('[arm.lock]\nelbow_joint = "9cm"', "arm: lock = { elbow_joint = \"9cm\" }: 'cm'", "rad"),
+        ('args = { ur5e = "b" }', "arm: ur5e.urdf: a URDF file takes no", "give args only with"),
         ('task = "poes"', "arm: no task named 'poes'", "there is: pose"),
         ('emit = ["pyton"]', "arm: no emitter named 'pyton'", "there is: python"),
     ],
@@ -90,3 +101,22 @@ def test_errors_of_a_build_name_the_entry_and_its_line(
     assert run(["build", "--check"]) == (2 if asked else 1)
     told = capsys.readouterr()
     assert f"ikgen.toml:10: {message}" in told.err if asked else "arm: stale: not" in told.out
+
+
+def test_what_was_chosen_is_told_in_words_of_the_config(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    shutil.copy(FIXTURES / "kuka_kr6r900sixx.urdf", tmp_path / "arm.urdf")
+    entries = ('name = "arm"', 'robot = "arm.urdf"', 'free = ["joint_a4"]', "samples = 50")
+    Path("ikgen.toml").write_text("\n".join(["[[arm]]", *entries]))
+    assert run(["build"]) == 0
+    said = capsys.readouterr().err
+    assert "arm: position and direction of the tool's " in said
+    assert '(task = "position-direction:' in said and ": what fits 5 joints)" in said
+    assert "arm: by default (joint_a4 = 0) " in said and " of 50 random poses have any" in said
+    Path("ikgen.toml").write_text(
+        "\n".join(["[[arm]]", *entries[:2], 'lock = { joint_a4 = "1deg" }'])
+    )
+    assert run(["build", "--check"]) == 1
+    assert "arm: stale: 'free' was [\"joint_a4\"], is not given" in capsys.readouterr().out

@@ -185,8 +185,8 @@ def _print(
         rest = [{"name": o.name, "files": [path.as_posix() for path in o.files]} for o in left]
         _echo({"arms": [_row(o) for o in outcomes], "left": rest}, code, message, hint)
     for o in outcomes:
-        if o.held and not quiet:
-            click.echo(f"{o.name}: {o.held}", err=True)
+        for text in o.told if not quiet else ():
+            click.echo(f"{o.name}: {text}", err=True)
         for text in o.warnings if not quiet else ():
             click.echo(f"warning: {o.name}: {text}", err=True)
         if o.exit_code:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ikgen.cli.tables import table
-from ikgen.generation.result import branches_beside, rounding
+from ikgen.generation.result import branches_beside, default_words, rounding, task_words
 from ikgen.model.counted import counted, listed
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ def summary(generation: Generation) -> str:
     module, dh = derivation.module, derivation.reading.dh
     lines = [
         ("robot", _robot(derivation)),
-        ("task", _task(derivation) + _held(derivation)),
+        ("task", task_words(derivation) + _held(derivation)),
         ("geometry", derivation.geometry.words + _rounding(derivation)),
         ("solved", "; ".join(module.order)),
         *_coupled(derivation),
@@ -85,18 +85,6 @@ def _calibration(derivation: Derivation) -> list[tuple[str, str]]:
     return [] if found is None else [("calibrated", found.words)]
 
 
-def _task(derivation: Derivation) -> str:
-    """The task, and that it was chosen where another might be expected."""
-    task = derivation.task
-    passed = ", ".join(derivation.passed_over)
-    failed = f"failed verification: {passed}" if passed else ""
-    if not derivation.chosen or task.whole_pose:
-        return task.words + (f" ({failed})" if failed else "")
-    dh = derivation.reading.dh
-    why = f"what fits {counted(dh.moving, 'joint')}" + (f"; {failed}" if failed else "")
-    return f"{task.words} (--task {task.name}: {why})"
-
-
 def _held(derivation: Derivation) -> str:
     """What is held, and that the rest cannot do all of the task, or hardly moves."""
     from ikgen.derivation.idle_solved import idle_solved
@@ -134,33 +122,9 @@ def _solutions(generation: Generation) -> str:
     for report in generation.reports.values():
         least, mean, greatest = report.solutions
         found = f"{least} / {mean:.1f} / {greatest} (min / mean / max of random poses)"
-        return f"{most}; {found}{_by_default(generation, report)}"
+        default = default_words(generation)
+        return f"{most}; {found}{'; ' * bool(default)}{default}"
     return most
-
-
-def _by_default(generation: Generation, report: VerificationReport) -> str:
-    """How many random poses have any with what is held at its default."""
-    answered, poses = report.by_default
-    if not poses:
-        return ""
-    values = generation.derivation.module.free_defaults
-    held = zip(generation.derivation.reading.dh.held, values, strict=True)
-    named = ", ".join(f"{name} = {value:.3g}" for name, value in held)
-    more = _elsewhere(generation.derivation) if 2 * answered < poses else ""
-    return f"; by default ({named}) {answered} of {poses} of these have any{more}"
-
-
-def _elsewhere(derivation: Derivation) -> str:
-    """What finds rows where the defaults have none; "" where no held value could change that."""
-    from ikgen.derivation.idle_solved import idle_solved
-    from ikgen.kinematics.idle_joints import idle_joints
-
-    dh = derivation.reading.dh
-    if idle_solved(dh, derivation.task) or set(dh.held) <= set(idle_joints(dh)):
-        return ""
-    if len(dh.held) == 1:
-        return "; search tries other values"
-    return "; search tries a grid of other values (seconds a pose in Python)"
 
 
 def _verified(name: str, report: VerificationReport) -> str:

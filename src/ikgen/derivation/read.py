@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 from ikgen.derivation.pinned_joints import pinned_in_chain, with_pinned
 from ikgen.emit.derivation import Reading
-from ikgen.errors import BadDescriptionError, UsageError
+from ikgen.errors import ArgumentError, BadDescriptionError, UsageError
 from ikgen.model.chain import PRISMATIC
 from ikgen.model.joint_tree import Joint
-from ikgen.model.joint_value import JointValue
+from ikgen.model.joint_value import JointValue, value_text
 from ikgen.model.module_name import identifier
 from ikgen.model.oddity import Oddity, OddityKind
 
@@ -242,31 +242,35 @@ def _read_table(request: Request, free: tuple[str, ...]) -> Reading:
 
 
 def _check_units(request: Request, joints: Iterable[Joint | ActuatedJoint]) -> None:
-    """Raises `UsageError` for a value with a length's unit of a joint that turns, or an angle's of one that
-    slides."""
+    """Raises `ArgumentError` for a value with a length's unit of a joint that turns, or an angle's of one
+    that slides."""
     for joint in joints:
-        kind = joint.type.value if isinstance(joint, Joint) else joint.kind
-        revolute = kind != PRISMATIC
+        revolute = _turns(joint)
         for option, values in (("--lock", request.lock), ("--free", request.free)):
             value = values.get(joint.name)
             if isinstance(value, JointValue) and not value.fits(revolute):
-                raise UsageError(
-                    f"{option} {joint.name}: '{value.unit}' is no unit of a joint that "
+                raise ArgumentError(
+                    f"{option} {joint.name}={value_text(value)}: '{value.unit}' is no unit of a joint that "
                     f"{'turns' if revolute else 'slides'}",
                     hint=f"give a value in {'rad or deg' if revolute else 'm, cm or mm'}",
                 )
 
 
+def _turns(joint: Joint | ActuatedJoint) -> bool:
+    kind = joint.type.value if isinstance(joint, Joint) else joint.kind
+    return kind != PRISMATIC
+
+
 def _check_locks(request: Request, joints: Iterable[Joint | ActuatedJoint]) -> None:
-    """Raises `UsageError` for a joint that is locked outside its limits."""
+    """Raises `ArgumentError` for a joint that is locked outside its limits."""
     from ikgen.kinematics.free_joints import VALUE_INSIDE
 
     for joint in joints:
         value, limits = request.lock.get(joint.name), joint.limits
         if value is not None and not limits.lower <= value <= limits.upper:
-            raise UsageError(
-                f"--lock {joint.name}={value:.9g}: outside the joint's limits, "
-                f"{limits.lower:.9g} to {limits.upper:.9g}",
+            raise ArgumentError(
+                f"--lock {joint.name}={value_text(value)}: outside the joint's limits, "
+                f"{limits.lower:.9g} to {limits.upper:.9g} {'rad' if _turns(joint) else 'm'}",
                 hint=VALUE_INSIDE,
             )
 

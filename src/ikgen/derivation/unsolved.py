@@ -91,15 +91,15 @@ def _known_gaps(derivation: Derivation) -> list[str]:
 
     dh, plan = derivation.reading.dh, derivation.module.plan
     found = []
+    if over_constrained(dh, derivation.task):
+        fixed = freedoms_fixed(dh, derivation.task)
+        found.append(f"{counted(dh.moving, 'joint move')} and the task fixes {fixed} freedoms")
     if plan is None and not derivation.graph.sound:
         weak = [step.candidate for step in derivation.graph.steps if not step.sound]
         steps = ", ".join(f"{c.unknown.text} ({c.leaf})" for c in weak)
         found.append(f"the rules leave no other way where {steps} fails")
     if plan is not None and plan.recall < 1.0:
         found.append(f"the elimination finds {plan.recall:.1%} of them")
-    if over_constrained(dh, derivation.task):
-        fixed = freedoms_fixed(dh, derivation.task)
-        found.append(f"{counted(dh.moving, 'joint move')} and the task fixes {fixed} freedoms")
     return found
 
 

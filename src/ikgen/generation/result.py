@@ -5,18 +5,59 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
+from ikgen.model.counted import counted
+
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Derivation
     from ikgen.generation.generate import Generation
     from ikgen.verify.verification_report import VerificationReport
 
-__all__ = ["as_dict", "branches_beside", "rounding"]
+__all__ = ["as_dict", "branches_beside", "default_words", "rounding", "task_words"]
 
 
 def rounding(derivation: Derivation) -> tuple[float, float] | None:
     """How far (m, rad) the file is off what was solved, where Newton steps take the rows to it; else
     None."""
     return derivation.reading.dh.deviation if derivation.module.rounded else None
+
+
+def task_words(derivation: Derivation) -> str:
+    """The task, and that it was chosen where another might be expected."""
+    task = derivation.task
+    passed = ", ".join(derivation.passed_over)
+    failed = f"failed verification: {passed}" if passed else ""
+    if not derivation.chosen or task.whole_pose:
+        return task.words + (f" ({failed})" if failed else "")
+    why = f"what fits {counted(derivation.reading.dh.moving, 'joint')}"
+    why += f"; {failed}" if failed else ""
+    return f"{task.words} (--task {task.name}: {why})"
+
+
+def default_words(generation: Generation) -> str:
+    """How many random poses have any solution with what is held at its default, and what finds others; ""
+    where nothing is held, or nothing was verified."""
+    report = next(iter(generation.reports.values()), None)
+    answered, poses = report.by_default if report is not None else (0, 0)
+    if not poses:
+        return ""
+    values = generation.derivation.module.free_defaults
+    held = zip(generation.derivation.reading.dh.held, values, strict=True)
+    named = ", ".join(f"{name} = {value:.3g}" for name, value in held)
+    more = _elsewhere(generation.derivation) if 2 * answered < poses else ""
+    return f"by default ({named}) {answered} of {poses} of these have any{more}"
+
+
+def _elsewhere(derivation: Derivation) -> str:
+    """What finds rows where the defaults have none; "" where no held value could change that."""
+    from ikgen.derivation.idle_solved import idle_solved
+    from ikgen.kinematics.idle_joints import idle_joints
+
+    dh = derivation.reading.dh
+    if idle_solved(dh, derivation.task) or set(dh.held) <= set(idle_joints(dh)):
+        return ""
+    if len(dh.held) == 1:
+        return "; search tries other values"
+    return "; search tries a grid of other values (seconds a pose in Python)"
 
 
 def branches_beside(derivation: Derivation) -> tuple[str, ...]:

@@ -6,11 +6,12 @@ import itertools
 import math
 from collections.abc import Iterable, Iterator
 
-from ikgen.errors import UsageError
+from ikgen.errors import ArgumentError
 from ikgen.kinematics.axis_relations import reach
 from ikgen.kinematics.idle_joints import hardly_moves
-from ikgen.model.chain import ActuatedJoint
+from ikgen.model.chain import REVOLUTE, ActuatedJoint
 from ikgen.model.dh import DHChain
+from ikgen.model.joint_value import value_text
 
 __all__ = ["VALUE_INSIDE", "free_defaults"]
 
@@ -43,8 +44,9 @@ def _choices(joint: ActuatedJoint, value: float | None, length: float) -> tuple[
     if value is not None:
         if low <= value <= high:
             return (value,)
-        raise UsageError(
-            f"--free {joint.name}={value:.9g}: outside its limits, {low:.9g} to {high:.9g}",
+        raise ArgumentError(
+            f"--free {joint.name}={value_text(value)}: outside its limits, "
+            f"{low:.9g} to {high:.9g} {'rad' if joint.kind == REVOLUTE else 'm'}",
             hint=f"{VALUE_INSIDE}; or none",
         )
     if hardly_moves(joint, length):

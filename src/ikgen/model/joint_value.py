@@ -8,7 +8,7 @@ import re
 
 from ikgen.errors import shown
 
-__all__ = ["UNITS", "JointValue", "parse_joint_value"]
+__all__ = ["UNITS", "JointValue", "parse_joint_value", "value_text"]
 
 UNITS = {
     "rad": 1.0,
@@ -25,9 +25,10 @@ _WITH_UNIT = re.compile(r"(.*?)\s*(rad|deg|°|mm|cm|m)")
 
 
 class JointValue(float):
-    """A value in rad or m; `unit` is the one that it was written with, "" where there was none."""
+    """A value in rad or m; `unit` is the one that it was `written` with, "" where there was none."""
 
     unit = ""
+    written = ""
 
     def fits(self, revolute: bool) -> bool:
         """Whether the unit is one of joints that turn, or of those that slide."""
@@ -64,5 +65,11 @@ def _of_text(text: str) -> JointValue:
     found = JointValue(
         math.radians(number) if unit in ("deg", "°") else number * UNITS.get(unit, 1)
     )
-    found.unit = unit
+    found.unit, found.written = unit, text.strip() if unit else ""
     return found
+
+
+def value_text(value: float) -> str:
+    """A joint's value as it was written, where that was with a unit; else in rad or m."""
+    written = value.written if isinstance(value, JointValue) else ""
+    return written.replace(" ", "") or f"{value:.9g}"

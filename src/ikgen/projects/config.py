@@ -121,7 +121,8 @@ def _arm(decoder: Decoder, table: Any, index: int) -> ArmConfig:
     try:
         stem_and_axis(arm.request.task or "", arm.request.tool_axis)
     except IkgenError as error:
-        raise CodecError(f"{where}.task", error.message, error.hint) from None
+        key = "tool_axis" if arm.request.task is None else "task"
+        raise CodecError(f"{where}.{key}", error.message, error.hint) from None
     for i, folder in enumerate(arm.request.package_paths):
         if not folder.is_dir():
             hint = "name the folder that holds the package's folder"

@@ -28,7 +28,7 @@ class ArmPlace:
             return None
         start, end = found
         for word in words:
-            whole = re.compile(rf"(?<![\w.-]){re.escape(word)}(?![\w-])")
+            whole = re.compile(rf"(?<![\w-]){re.escape(word)}(?![\w-])")
             for i in range(start + 1, end):
                 if whole.search(lines[i].partition("#")[0]):
                     return i + 1

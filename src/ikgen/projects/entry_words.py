@@ -29,11 +29,13 @@ class EntryWords(Notation):
         self._there = frozenset(self.fields(typed))
 
     def names_in(self, message: str) -> Iterator[str]:
-        """What a message names that may stand in the table, what it is about first: names in quotes, the
-        file that it begins with, entries."""
-        yield from re.findall(r"'([^']+)'", message)
+        """What a message names that may stand in the table, what it is about first: entries that it begins
+        with, the file that it does, names in quotes, other entries."""
+        entries = [field.split(" ")[0] for field in self.fields(message)]
+        yield from entries if message.startswith("-") else ()
         yield from (Path(file).name for file in re.findall(r"^([^\s:]+):", message))
-        yield from (field.split(" ")[0] for field in self.fields(message))
+        yield from re.findall(r"'([^']+)'", message)
+        yield from entries
 
     def generating(self, robot: str, words: Sequence[str]) -> str:
         """The entries that are to be written, or the command that builds what is listed."""

@@ -33,7 +33,8 @@ class Outcome:
     the error if it failed (`exit_code` then is not 0); `trace` is that of an internal error, `warnings`
     are what has to be told of the file and of what was generated, `solutions` how many a pose has at
     most, `missed` in words what the verification of each output missed, empty where that is nothing;
-    `held` says which joints were chosen to be held, and why; `steps` are what the work told while it ran
+    `told` are lines on what was chosen: a task, joints to hold, what these answer by default;
+    `steps` are what the work told while it ran
     and `work` how it went, where that was asked for. `place` is what the error is about in the config, as
     messages begin with it ("": nothing that can be told)."""
 
@@ -48,7 +49,7 @@ class Outcome:
     warnings: tuple[str, ...] = ()
     solutions: int = 0
     missed: str = ""
-    held: str = ""
+    told: tuple[str, ...] = ()
     steps: tuple[tuple[Stage, str], ...] = ()
     work: str = ""
     place: str = ""
@@ -165,7 +166,7 @@ def _in_config_words(outcome: Outcome, arm: ArmConfig) -> Outcome:
     told = replace(
         outcome,
         hint=said.words(outcome.hint),
-        held=said.words(outcome.held),
+        told=tuple(map(said.words, outcome.told)),
         warnings=tuple(map(said.words, outcome.warnings)),
     )
     if not outcome.message or outcome.exit_code == INTERNAL_ERROR:
@@ -194,7 +195,6 @@ def _made(job: _Job, made: Generation) -> Outcome:
     from ikgen.derivation.announcements import announcements
 
     missed = "; ".join(f"{n} {r.missed_words}" for n, r in made.reports.items() if r.missed)
-    held = made.derivation.held
     return Outcome(
         job.arm.name,
         job.reason,
@@ -203,8 +203,20 @@ def _made(job: _Job, made: Generation) -> Outcome:
         warnings=announcements(made.derivation),
         solutions=made.derivation.module.max_solutions,
         missed=missed,
-        held=held.words if held is not None else "",
+        told=_told(made),
     )
+
+
+def _told(made: Generation) -> tuple[str, ...]:
+    """Lines on what was chosen, and on what held joints answer by default."""
+    from ikgen.generation.result import default_words, task_words
+
+    derivation = made.derivation
+    chosen = derivation.chosen and not derivation.task.whole_pose
+    held = derivation.held.words if derivation.held is not None else ""
+    default = default_words(made).replace("of these", "random poses")
+    task = task_words(derivation) if chosen or derivation.passed_over else ""
+    return tuple(filter(None, (task, held, default)))
 
 
 def _files(arm: ArmConfig) -> tuple[Path, ...]:

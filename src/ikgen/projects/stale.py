@@ -5,6 +5,7 @@ Nothing is expanded or derived, so the answer takes milliseconds and needs none 
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Sequence
 from typing import Any
@@ -101,4 +102,11 @@ def _changed_files(record: Record, packages: Packages) -> str:
 
 
 def _shown(value: Any) -> str:
-    return "not given" if value in (None, {}, []) else f"{value}"
+    """A value as a config has it."""
+    if value in (None, {}, []):
+        return "not given"
+    if isinstance(value, dict):
+        if None in value.values():
+            return _shown([name if x is None else f"{name} = {x}" for name, x in value.items()])
+        return f"{{ {', '.join(f'{name} = {json.dumps(x)}' for name, x in value.items())} }}"
+    return json.dumps(value, ensure_ascii=False) if isinstance(value, list) else f"{value}"

@@ -19,7 +19,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
 
-from ikgen.errors import shown
+from ikgen.errors import UnknownNameError, shown
 
 __all__ = [
     "CodecError",
@@ -117,7 +117,7 @@ class Decoder:
             known = sorted(_names(kind))
             for name in value:
                 if name not in known:
-                    hint = f"there is: {', '.join(known)}"
+                    hint = UnknownNameError("entry", name, known).hint
                     raise CodecError(f"{where}.{name}", f"unknown entry '{name}'", hint)
         found: T = self._fields(kind, value, where)
         return found

@@ -191,6 +191,14 @@ def test_limits_that_are_hardly_meant(tmp_path: Path, limits: str, words: str) -
     assert upper == (math.inf if not words else 170.0 if "degrees" in words else 4.0 * math.pi)
 
 
+def test_limits_with_units(tmp_path: Path) -> None:
+    rows = [(R, 0, 0, 0.3, 0), (P, 0.7, 0.1, 0.2, 0.3)]
+    head, tail = table(rows[:1], tail='limits = ["-150deg", "pi/2"]'), 'limits = ["-5 mm", "20cm"]'
+    dh = read(tmp_path, head + table(rows[1:], head="", tail=tail))
+    found = [(joint.limits.lower, joint.limits.upper) for joint in dh.joints]
+    assert found == [(math.radians(-150.0), math.pi / 2.0), (-0.005, 0.2)]
+
+
 def test_standard_fixture_with_limits_and_tool() -> None:
     source, dh = read_dh_table(FIXTURES / "scara_standard.toml", free=("flange",))
     assert source.warnings == ()
@@ -259,6 +267,7 @@ BAD = {
         "'b' has no number", "c + 1",
     ),
     "limits order": (table(GOOD, tail="limits = [2, 1]"), "above", "limits"),
+    "limits unit": (table(GOOD, tail='limits = ["-10deg", "2cm"]'), "'2cm' is no value of a", "limits"),
     "limits count": (table(GOOD, tail="limits = [2]"), "not two numbers", "limits"),
     "same name": (
         table([(R, 0, 0, 0, 0)], tail='name = "a"\n' + table(GOOD[1:], "", 'name = "a"')),

@@ -10,6 +10,7 @@ from ikgen.importers.dh.entry_expression import BadEntryError, evaluate
 from ikgen.importers.dh.table_document import TableDocument
 from ikgen.importers.urdf.joint_limits import FARTHEST, PINNED, UNLIMITED, turning_limits
 from ikgen.model.joint_tree import Limits
+from ikgen.model.joint_value import parse_joint_value
 
 __all__ = ["read_limits"]
 
@@ -35,11 +36,10 @@ def read_limits(
         if isinstance(one, bool) or not isinstance(one, int | float | str):
             raise document.error(f"limit {one!r} is no number", _HINT, joint=i, key="limits")
         try:
-            found = evaluate(one, parameters, angle=True) if isinstance(one, str) else None
+            value = _of_text(one, joint, parameters) if isinstance(one, str) else _as_float(one)
         except BadEntryError as error:
             raise document.error(f"limits: {error}", error.hint, joint=i, key="limits") from None
-        value = _as_float(one) if found is None else found.value
-        if math.isnan(value) or (found is not None and found.symbolic):
+        if math.isnan(value):
             raise document.error(f"limit {one!r} has no number", _HINT, joint=i, key="limits")
         values.append(value)
     if values[0] > values[1]:
@@ -58,6 +58,20 @@ def read_limits(
     for words in odd:
         document.warn(f"joint {i}: {words}")
     return limits
+
+
+def _of_text(text: str, joint: Mapping[str, Any], parameters: Mapping[str, float | None]) -> float:
+    """A limit in rad or m: an expression, of NaN where it has no number, or a number with its unit."""
+    try:
+        found = parse_joint_value(text)
+    except ValueError:
+        read = evaluate(text, parameters, angle=True)
+        return math.nan if read.symbolic else read.value
+    turns = joint["type"] == "revolute"
+    if not found.fits(turns):
+        kind, units = ("turns", "rad or deg") if turns else ("slides", "m, cm or mm")
+        raise BadEntryError(f"'{text}' is no value of a joint that {kind}", f"write it in {units}")
+    return float(found)
 
 
 def _as_float(value: Any) -> float:
