@@ -21,14 +21,21 @@ ROOT = Path(__file__).resolve().parents[2]
 ARMS = {
     "held": Request(ROOT / "urdf_fixtures/franka_fr3.urdf", free={"fr3_joint7": None}),
     "rounded": Request(ROOT / "urdf_fixtures/doosan_m1013.urdf"),
+    "near": Request(ROOT / "urdf_fixtures/kuka_kr6r900sixx.urdf"),
     "eliminated": Request(ROOT / "tests/robots/tables/KawasakiRS05L.toml"),
 }
 
 
 @pytest.mark.skipif(importlib.util.find_spec("mypy") is None, reason="needs mypy")
-def test_modules_and_packages_are_typed(tmp_path: Path) -> None:
+def test_modules_and_packages_are_typed(tmp_path: Path, tmp_path_factory: pytest.TempPathFactory) -> None:
+    near = tmp_path_factory.mktemp("robot") / "near.urdf"
+    text = ARMS["near"].robot.read_text()
+    near.write_text(text.replace("-1 0 0", "-1 0.00001 0", 1))
     for name, request in ARMS.items():
-        module = replace(derive(request).module, name=name)
+        robot = near if name == "near" else request.robot
+        module = replace(derive(replace(request, robot=robot)).module, name=name)
+        if name == "near":  # rows of no poses beside
+            assert module.rounded and module.policy.beside_reach < module.policy.anywhere
         (tmp_path / f"{name}_ik.py").write_text(emit_module(module), encoding="utf-8")
         for path, text in nanobind.emit(module).items():
             if path.endswith((".py", ".pyi")):  # the package lies in a folder of its name

@@ -33,9 +33,9 @@ def task_words(derivation: Derivation) -> str:
     return f"{task.words} (--task {task.name}: {why})"
 
 
-def default_words(generation: Generation) -> str:
-    """How many random poses have any solution with what is held at its default, and what finds others; ""
-    where nothing is held, or nothing was verified."""
+def default_words(generation: Generation, of_poses: str = "of these") -> str:
+    """How many random poses, called `of_poses`, have any solution with what is held at its default, and
+    what finds others; "" where nothing is held, or nothing was verified."""
     report = next(iter(generation.reports.values()), None)
     answered, poses = report.by_default if report is not None else (0, 0)
     if not poses:
@@ -44,7 +44,7 @@ def default_words(generation: Generation) -> str:
     held = zip(generation.derivation.reading.dh.held, values, strict=True)
     named = ", ".join(f"{name} = {value:.3g}" for name, value in held)
     more = _elsewhere(generation.derivation) if 2 * answered < poses else ""
-    return f"by default ({named}) {answered} of {poses} of these have any{more}"
+    return f"by default ({named}) {answered} of {poses} {of_poses} have any{more}"
 
 
 def _elsewhere(derivation: Derivation) -> str:

@@ -33,10 +33,9 @@ class Outcome:
     the error if it failed (`exit_code` then is not 0); `trace` is that of an internal error, `warnings`
     are what has to be told of the file and of what was generated, `solutions` how many a pose has at
     most, `missed` in words what the verification of each output missed, empty where that is nothing;
-    `told` are lines on what was chosen: a task, joints to hold, what these answer by default;
-    `steps` are what the work told while it ran
-    and `work` how it went, where that was asked for. `place` is what the error is about in the config, as
-    messages begin with it ("": nothing that can be told)."""
+    `told` are lines on what was chosen: a task, joints to hold, what these answer by default; `steps` are
+    what the work told while it ran and `work` how it went, where that was asked for. `place` is what the
+    error is about in the config, as messages begin with it ("": nothing that can be told)."""
 
     name: str
     reason: str
@@ -163,17 +162,17 @@ def _in_config_words(outcome: Outcome, arm: ArmConfig) -> Outcome:
     if arm.place is None:
         return outcome
     said = EntryWords(arm.request)
-    told = replace(
+    outcome = replace(
         outcome,
         hint=said.words(outcome.hint),
         told=tuple(map(said.words, outcome.told)),
         warnings=tuple(map(said.words, outcome.warnings)),
     )
     if not outcome.message or outcome.exit_code == INTERNAL_ERROR:
-        return told
+        return outcome
     line = arm.place.line_about(said.names_in(outcome.message))
     place = place_in(arm.place.file.as_posix(), line)
-    return replace(told, message=said.words(outcome.message), place=place)
+    return replace(outcome, message=said.words(outcome.message), place=place)
 
 
 def _failed(job: _Job, error: Exception) -> Outcome:
@@ -214,9 +213,8 @@ def _told(made: Generation) -> tuple[str, ...]:
     derivation = made.derivation
     chosen = derivation.chosen and not derivation.task.whole_pose
     held = derivation.held.words if derivation.held is not None else ""
-    default = default_words(made).replace("of these", "random poses")
     task = task_words(derivation) if chosen or derivation.passed_over else ""
-    return tuple(filter(None, (task, held, default)))
+    return tuple(filter(None, (task, held, default_words(made, "random poses"))))
 
 
 def _files(arm: ArmConfig) -> tuple[Path, ...]:

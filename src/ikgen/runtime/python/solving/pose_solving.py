@@ -194,7 +194,9 @@ def _certain_rows(
             return None
         rows = regular
     if arm.together is not None and not rows:
-        beside = (np.array(T) @ arm.beside).tolist() if arm.policy.beside_anywhere else []
+        beside: list[list[list[float]]] = (
+            (np.array(T) @ arm.beside).tolist() if arm.policy.beside_anywhere else []
+        )
         return None if any(arm.branches(pose, tuple(start), held)[0] for pose in beside) else []
     if arm.together is not None:
         q = _refined_together(arm, arm.together, np.array(rows), (T, near, held))
