@@ -10,7 +10,7 @@ from ikgen.emit.derivation import Reading
 from ikgen.errors import ArgumentError, BadDescriptionError, UsageError
 from ikgen.model.chain import PRISMATIC
 from ikgen.model.joint_tree import Joint
-from ikgen.model.joint_value import JointValue, value_text
+from ikgen.model.joint_value import JointValue, kind_and_units, value_text
 from ikgen.model.module_name import identifier
 from ikgen.model.oddity import Oddity, OddityKind
 
@@ -249,10 +249,11 @@ def _check_units(request: Request, joints: Iterable[Joint | ActuatedJoint]) -> N
         for option, values in (("--lock", request.lock), ("--free", request.free)):
             value = values.get(joint.name)
             if isinstance(value, JointValue) and not value.fits(revolute):
+                kind, units = kind_and_units(revolute)
                 raise ArgumentError(
                     f"{option} {joint.name}={value_text(value)}: '{value.unit}' is no unit of a joint that "
-                    f"{'turns' if revolute else 'slides'}",
-                    hint=f"give a value in {'rad or deg' if revolute else 'm, cm or mm'}",
+                    f"{kind}",
+                    hint=f"give a value in {units}",
                 )
 
 

@@ -8,7 +8,7 @@ import re
 
 from ikgen.errors import shown
 
-__all__ = ["UNITS", "JointValue", "parse_joint_value", "value_text"]
+__all__ = ["UNITS", "JointValue", "kind_and_units", "parse_joint_value", "value_text"]
 
 UNITS = {
     "rad": 1.0,
@@ -67,6 +67,11 @@ def _of_text(text: str) -> JointValue:
     )
     found.unit, found.written = unit, text.strip() if unit else ""
     return found
+
+
+def kind_and_units(revolute: bool) -> tuple[str, str]:
+    """What a joint does, and the units of its values, in words."""
+    return ("turns", "rad or deg") if revolute else ("slides", "m, cm or mm")
 
 
 def value_text(value: float) -> str:

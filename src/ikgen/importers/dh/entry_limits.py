@@ -10,7 +10,7 @@ from ikgen.importers.dh.entry_expression import BadEntryError, evaluate
 from ikgen.importers.dh.table_document import TableDocument
 from ikgen.importers.urdf.joint_limits import FARTHEST, PINNED, UNLIMITED, turning_limits
 from ikgen.model.joint_tree import Limits
-from ikgen.model.joint_value import parse_joint_value
+from ikgen.model.joint_value import kind_and_units, parse_joint_value
 
 __all__ = ["read_limits"]
 
@@ -69,7 +69,7 @@ def _of_text(text: str, joint: Mapping[str, Any], parameters: Mapping[str, float
         return math.nan if read.symbolic else read.value
     turns = joint["type"] == "revolute"
     if not found.fits(turns):
-        kind, units = ("turns", "rad or deg") if turns else ("slides", "m, cm or mm")
+        kind, units = kind_and_units(turns)
         raise BadEntryError(f"'{text}' is no value of a joint that {kind}", f"write it in {units}")
     return float(found)
 
