@@ -10,7 +10,7 @@ from ikgen.emit.derivation import Reading
 from ikgen.errors import ArgumentError, BadDescriptionError, UsageError
 from ikgen.model.chain import PRISMATIC
 from ikgen.model.joint_tree import Joint
-from ikgen.model.joint_value import JointValue, kind_and_units, value_text
+from ikgen.model.joint_value import JointValue, kind_and_units, range_text, value_text
 from ikgen.model.module_name import identifier
 from ikgen.model.oddity import Oddity, OddityKind
 
@@ -271,7 +271,7 @@ def _check_locks(request: Request, joints: Iterable[Joint | ActuatedJoint]) -> N
         if value is not None and not limits.lower <= value <= limits.upper:
             raise ArgumentError(
                 f"--lock {joint.name}={value_text(value)}: outside the joint's limits, "
-                f"{limits.lower:.9g} to {limits.upper:.9g} {'rad' if _turns(joint) else 'm'}",
+                f"{range_text(limits.lower, limits.upper, _turns(joint))}",
                 hint=VALUE_INSIDE,
             )
 

@@ -243,8 +243,7 @@ def divisor_of(
     if tol.double is not None and regular is not None and power == 1:
         least = g.select(tol.double, g.const(_HALF_OF_DIGITS * size), regular.args[1])
         regular = g.binary("gt", magnitude, least)
-    bound = tol.flag if power == 1 else tol.norm
-    clear = found.above(g, min(bound, tol.norm**2) if squared and power == 1 else bound)
+    clear = found.above(g, tol.norm if power == 2 else tol.norm**2 if squared else tol.flag)
     assert regular is not None
     return Divisor(g.select(regular, value, g.one), regular, clear, magnitude, size, power)
 

@@ -29,7 +29,7 @@ def _alike(one: Array, other: Array, size: float) -> bool:
 
 def _core(e: Expr) -> Expr:
     """What is left of an expression without its constant factors and its sign."""
-    while e.op in ("neg", "mul") and (e.op == "neg" or any(one.is_fixed for one in e.args)):
+    while e.op == "neg" or (e.op == "mul" and any(one.is_fixed for one in e.args)):
         e = e.args[-1] if e.args[0].is_fixed else e.args[0]
     return e
 

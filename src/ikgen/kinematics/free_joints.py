@@ -11,7 +11,7 @@ from ikgen.kinematics.axis_relations import reach
 from ikgen.kinematics.idle_joints import hardly_moves
 from ikgen.model.chain import REVOLUTE, ActuatedJoint
 from ikgen.model.dh import DHChain
-from ikgen.model.joint_value import value_text
+from ikgen.model.joint_value import range_text, value_text
 
 __all__ = ["VALUE_INSIDE", "free_defaults"]
 
@@ -46,7 +46,7 @@ def _choices(joint: ActuatedJoint, value: float | None, length: float) -> tuple[
             return (value,)
         raise ArgumentError(
             f"--free {joint.name}={value_text(value)}: outside its limits, "
-            f"{low:.9g} to {high:.9g} {'rad' if joint.kind == REVOLUTE else 'm'}",
+            f"{range_text(low, high, joint.kind == REVOLUTE)}",
             hint=f"{VALUE_INSIDE}; or none",
         )
     if hardly_moves(joint, length):

@@ -8,7 +8,14 @@ import re
 
 from ikgen.errors import shown
 
-__all__ = ["UNITS", "JointValue", "kind_and_units", "parse_joint_value", "value_text"]
+__all__ = [
+    "UNITS",
+    "JointValue",
+    "kind_and_units",
+    "parse_joint_value",
+    "range_text",
+    "value_text",
+]
 
 UNITS = {
     "rad": 1.0,
@@ -72,6 +79,11 @@ def _of_text(text: str) -> JointValue:
 def kind_and_units(revolute: bool) -> tuple[str, str]:
     """What a joint does, and the units of its values, in words."""
     return ("turns", "rad or deg") if revolute else ("slides", "m, cm or mm")
+
+
+def range_text(low: float, high: float, revolute: bool) -> str:
+    """Limits of a joint with their unit."""
+    return f"{low:.9g} to {high:.9g} {'rad' if revolute else 'm'}"
 
 
 def value_text(value: float) -> str:

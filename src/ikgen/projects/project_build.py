@@ -210,11 +210,10 @@ def _told(made: Generation) -> tuple[str, ...]:
     """Lines on what was chosen, and on what held joints answer by default."""
     from ikgen.generation.result import default_words, task_words
 
-    derivation = made.derivation
-    chosen = derivation.chosen and not derivation.task.whole_pose
+    derivation, task = made.derivation, task_words(made.derivation)
     held = derivation.held.words if derivation.held is not None else ""
-    task = task_words(derivation) if chosen or derivation.passed_over else ""
-    return tuple(filter(None, (task, held, default_words(made, "random poses"))))
+    chosen = task if task != derivation.task.words else ""
+    return tuple(filter(None, (chosen, held, default_words(made, "random poses"))))
 
 
 def _files(arm: ArmConfig) -> tuple[Path, ...]:

@@ -5,7 +5,6 @@ Nothing is expanded or derived, so the answer takes milliseconds and needs none 
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Sequence
 from typing import Any
@@ -16,6 +15,7 @@ from ikgen.importers.named_robots import is_lost
 from ikgen.outputs.journal import half_in_place
 from ikgen.projects.check_findings import HALF_IN_PLACE
 from ikgen.projects.config import ArmConfig
+from ikgen.projects.entry_words import EntryWords
 from ikgen.projects.recorded_inputs import Packages
 from ikgen.records.codec import encode, entries_of
 from ikgen.records.record import (
@@ -105,8 +105,9 @@ def _shown(value: Any) -> str:
     """A value as a config has it."""
     if value in (None, {}, []):
         return "not given"
+    words = EntryWords()
+    if isinstance(value, dict) and None in value.values():
+        value = [name if x is None else f"{name} = {x}" for name, x in value.items()]
     if isinstance(value, dict):
-        if None in value.values():
-            return _shown([name if x is None else f"{name} = {x}" for name, x in value.items()])
-        return f"{{ {', '.join(f'{name} = {json.dumps(x)}' for name, x in value.items())} }}"
-    return json.dumps(value, ensure_ascii=False) if isinstance(value, list) else f"{value}"
+        return words.table({name: str(x) for name, x in value.items()})
+    return words.names(value) if isinstance(value, list) else f"{value}"

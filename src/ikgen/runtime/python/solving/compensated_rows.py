@@ -143,10 +143,9 @@ def _take_ends(arm: Arm, rows: _Rows, pose: Index, one: Index, other: Index) -> 
     fold, _ = approach(arm, start, aim, side)
     way = differences(arm, fold, rows.first[owner, lane])
     moved = np.abs(way).max(axis=1)
-    remote = moved < _TOGETHER
+    remote, farther = moved < _TOGETHER, _REMOTE * moved / (2 * (_HALTS - 1))
     for i in range(_HALTS):  # is there a second singularity from the fold to the closed form's row?
         _, slope = linearized(arm, fold + i * (way / (_HALTS - 1)), aim)
-        farther = _REMOTE * moved / (2 * (_HALTS - 1))
         remote &= np.linalg.svd(slope, compute_uv=False)[:, -2] > farther
     q, error, sigma = ends_of(arm, fold, aim)
     near = np.abs(differences(arm, start, q)).max(axis=1) < _TOGETHER
