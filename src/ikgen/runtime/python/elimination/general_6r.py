@@ -12,8 +12,8 @@ from ikgen.runtime.python.arm.chain_kinematics import Motion
 from ikgen.runtime.python.arm.solve_policy import Policy
 from ikgen.runtime.python.arm.whole_pose import PoseTask
 from ikgen.runtime.python.arrays.array_types import Array, Flags, Index
-from ikgen.runtime.python.arrays.rigid_motion import inverses, rotations_z
 from ikgen.runtime.python.elimination.back_substitution import complete_angles, middle_angles
+from ikgen.runtime.python.elimination.displaced_poses import ASIDE, CLOSE, FARTHER
 from ikgen.runtime.python.elimination.loop_equations import (
     joint_values,
     loop_constants,
@@ -56,6 +56,7 @@ _SIX = range(6)
 DIRECT = 1e-7
 # Error of one that stalls where more than two solutions meet: steps get no closer there in reasonable time.
 _STALLED = 1e-6
+_OTHERS = 2  # from this run on
 # Smallest singular value where solutions meet: rows keep few digits there, and so close together are one.
 _MEETS, _CLOSE_BY = 1e-6, 1e-3
 # Beside a fold rows of several runs are one only where all have all their digits.
@@ -138,29 +139,13 @@ def _thorough(policy: Policy, farther: bool) -> Policy:
     return replace(policy, refinement=_THOROUGH)
 
 
-def _displaced(by: float) -> tuple[Array, Array]:
-    """A rotation of about so much (rad), as much of a translation (arm lengths), and their inverse."""
-    X = np.eye(4)
-    one, other = rotations_z(np.array([0.9, 1.1]) * by)
-    X[:3, :3] = (one @ other[[2, 0, 1, 3]][:, [2, 0, 1, 3]])[:3, :3]
-    X[:3, 3] = 0.8 * by, -1.1 * by, 0.6 * by
-    return X, inverses(X)
-
-
-# At displaced poses roots come apart that right angles make coincide; Newton's method takes them back.
-# Farther off what more than two solutions that meet become is not real, or far from them, but regular ones
-# come apart of which more than two share the hidden angle; closer by an elimination that has no rank at the
-# pose leaves no digits.
-_ASIDE, _FARTHER, _CLOSE = _displaced(1e-3), _displaced(0.03), (_displaced(1e-6), _displaced(1e-8))
-
-
 def _runs(plan: Plan) -> list[tuple[Way, tuple[Array | None, ...]]]:
     """One after the other what is tried, and the motions of the tool to the poses that it is tried at."""
     ways = [(plan.find, one, DIRECT) for one in plan.eliminations]
     runs: list[tuple[Way, tuple[Array | None, ...]]] = [(way, (None,)) for way in plan.direct]
-    runs += [(ways[0], (None,)), (ways[0], _ASIDE)]
-    runs += [(way, (None, *_ASIDE)) for way in ways[1:]]
-    return runs + [(way, moves) for moves in (_FARTHER, *_CLOSE) for way in ways]
+    runs += [(ways[0], (None,)), (ways[0], ASIDE)]
+    runs += [(way, (None, *ASIDE)) for way in ways[1:]]
+    return runs + [(way, moves) for moves in (FARTHER, *CLOSE) for way in ways]
 
 
 def six_joint_rows(
@@ -186,8 +171,8 @@ def six_joint_rows(
         if not len(todo):
             break
         (pose, q, before), real, clear, stalled = _run(six, plan, way, moves, T, todo, policy)
-        own, told = moves[0] is None, number >= len(plan.direct)
-        beside = _noted(real, clear, todo, own, told, (least, unsure, blurred))
+        own, run = moves[0] is None, number - len(plan.direct)
+        beside = _noted(real, clear, todo, own, run, (least, unsure, blurred))
         q, pose, exact = exact_first(q, pose, before < way[2], plan.turning, policy.coincident)
         mine = np.bincount(pose, minlength=size)[todo]
         if number == 0:
@@ -202,7 +187,7 @@ def six_joint_rows(
             count = np.bincount(of, minlength=size)[todo]
             ranked = (least[todo] >= 0) & ~stalled & (~hollow[todo] | (len(moves) > 1))
             settled = ranked & (mine == known) & (known == count) & (count % 2 == 0)
-            others = number > len(plan.direct) + 1  # one alone may miss the same of a crowd twice
+            others = run >= _OTHERS  # one alone may miss the same of a crowd twice
             settled &= others | (count >= beside) & ~blurred[todo]
             left = np.flatnonzero(ranked & others & ~settled)
             settled[left] = _same_apart(six, plan, todo[left], ((found, of), old, (q, pose)))
@@ -224,19 +209,25 @@ def _noted(
     clear: Flags,
     todo: Index,
     own: bool,
-    told: bool,
+    run: int,
     marks: tuple[Index, Flags, Flags],
 ) -> Index:
     """Enters what a run tells of the poses `todo` by its `real` roots (m, k), those of the pose itself
     first if it is its `own`: of all poses (N,) how many solutions there are at least, which may have some,
-    whatever is found, and whose own roots do not tell. The most roots (k,) of a displaced pose."""
+    whatever is found, and whose own roots do not tell. The most roots (k,) of a displaced pose.
+
+    `run` is 0 where the first elimination begins. That a pose has none is believed of another one whose
+    roots tell so clearly, if those of the first do too, or displaced poses have none either."""
     least, unsure, blurred = marks
-    if own and told:
+    if own and run >= 0:
         least[todo] = np.maximum(least[todo], real[0])
         blurred[todo] |= (real[0] < 0) | ~clear
         unsure |= blurred
     beside: Index = real[int(own) :].max(axis=0, initial=0)
     unsure[todo] |= beside > 0
+    if own and run >= _OTHERS:
+        none = todo[clear & (real[0] == 0) & ((beside == 0) | ~blurred[todo])]
+        unsure[none] = blurred[none] = False
     return beside
 
 
