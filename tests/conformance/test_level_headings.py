@@ -13,7 +13,8 @@ from tests.support.solving import NO_COMPILER
 from ikgen.derivation.derive import derive
 from ikgen.derivation.read import read
 from ikgen.emit.derivation import Derivation
-from ikgen.records.request import Request
+from ikgen.generation.generate import generate
+from ikgen.records.request import Outputs, Request
 from ikgen.tasks.fitting import fitting_tasks
 from ikgen.verify.agreement import disagreements
 from ikgen.verify.completeness import survey
@@ -98,3 +99,38 @@ def test_level_poses_are_answered(solved: Solved) -> None:
             heading = np.arctan2(there[:, 1, 0], there[:, 0, 0])
             turned = np.exp(1j * (heading - np.arctan2(T[1, 0], T[0, 0])))
             assert np.abs(turned - 1.0).max() < 1e-9
+
+
+PALLETIZER = """<robot name="palletizer">
+  <link name="base"/><link name="column"/><link name="upper"/><link name="rod"/><link name="fore"/>
+  <link name="plate"/><link name="flange"/>
+  <joint name="j1" type="revolute"><parent link="base"/><child link="column"/>
+    <origin xyz="0 0 0.23"/><axis xyz="0 0 1"/><limit lower="-2.7" upper="2.7"/></joint>
+  <joint name="j2" type="revolute"><parent link="column"/><child link="upper"/>
+    <origin xyz="0.04 0 0"/><axis xyz="0 1 0"/><limit lower="-0.4" upper="1.4"/></joint>
+  <joint name="j2m" type="revolute"><parent link="upper"/><child link="rod"/>
+    <origin xyz="0 0 0.175"/><axis xyz="0 1 0"/><limit lower="-3" upper="3"/>
+    <mimic joint="j2" multiplier="-1"/></joint>
+  <joint name="j3" type="revolute"><parent link="rod"/><child link="fore"/>
+    <axis xyz="0 1 0"/><limit lower="-0.3" upper="1.8"/></joint>
+  <joint name="j3m" type="revolute"><parent link="fore"/><child link="plate"/>
+    <origin xyz="0.175 0 0"/><axis xyz="0 1 0"/><limit lower="-3" upper="3"/>
+    <mimic joint="j3" multiplier="-1"/></joint>
+  <joint name="j4" type="revolute"><parent link="plate"/><child link="flange"/>
+    <origin xyz="0.066 0 -0.04" rpy="{turns}"/><axis xyz="0 0 1"/><limit lower="-6" upper="6"/></joint>
+</robot>
+"""
+TURNS = ["0 3.14 0", "3.14 0 0", "3.14409 0 0", "0.0025 0.003 0"]
+
+
+@pytest.mark.parametrize("turns", sampled(TURNS, ["3.14409 0 0"]))
+def test_tilts_that_no_constant_of_the_rows_is_rounded_for_are_solved(
+    tmp_path: Path, turns: str
+) -> None:
+    """A flange's turn about the axes of the arm before it is a constant like any other."""
+    path = tmp_path / "palletizer.urdf"
+    path.write_text(PALLETIZER.format(turns=turns))
+    emit = ("python",) if NO_COMPILER else ("python", "cpp")
+    made = generate(Request(path), Outputs(out=tmp_path, emit=emit, samples=200))
+    assert made.derivation.task.name == "position-yaw"
+    assert all(report.passed for report in made.reports.values())

@@ -37,21 +37,30 @@ def test_rows_of_rounded_files_are_refined(
 
 
 def chain_facts(
-    *, deviation: tuple[float, float] = (0.0, 0.0), most_driven: float = 1.0, reach: float = 0.5
+    *, deviation: tuple[float, float] = (0.0, 0.0), most_driven: float = 1.0, away: float = 0.0
 ) -> SimpleNamespace:
-    """What policies need to know of an arm whose links are `reach` m apart."""
-    frame = np.eye(4)
-    frame[0, 3] = reach
+    """What policies need to know of an arm that stands `away` m from the frame of its poses."""
+    base, link = np.eye(4), np.eye(4)
+    base[1, 3], link[0, 3] = away, 0.5
     joints = [SimpleNamespace(kind="revolute", limits=SimpleNamespace(lower=-1.0, upper=1.0))]
     return SimpleNamespace(
         deviation=deviation, most_driven=most_driven, held=(), symbols=(), dof=1, rows=(),
-        file_frames=(frame,), joints=joints,
+        file_frames=(base, link), joints=joints,
     )  # fmt: skip
 
 
 def test_what_moves_the_tool_farther_is_put_on_limits_from_less_far() -> None:
     plain = SolvePolicy().limit_tolerance
     assert module_around(None, chain_facts(most_driven=4.0)).policy.limit_tolerance == plain / 4.0
+
+
+def test_what_stands_far_away_is_exact_to_the_digits_that_leaves() -> None:
+    """Rows are tried on limits that are exact there: 5 km away a double has 1e-12 m."""
+    plain = SolvePolicy()
+    for away, least in ((0.0, 1e-12), (200.0, 1e-12), (5e3, 2e-11)):
+        policy = module_around(None, chain_facts(away=away)).policy
+        assert policy.exact == pytest.approx(least)
+        assert policy.limit_tolerance == plain.limit_tolerance
 
 
 def test_joints_of_large_arms_are_put_on_limits_from_less_far(

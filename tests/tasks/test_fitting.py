@@ -170,6 +170,49 @@ def test_a_heading_is_of_an_axis_that_stays_level() -> None:
     assert "heading of the tool's z axis" in find_task("position-yaw:z").words
 
 
+def test_an_axis_that_stays_level_has_no_elevation() -> None:
+    """Not even where rounding tilts it by a little."""
+    dh = chain("scara_standard.toml")
+    tilt = np.eye(4)
+    tilt[1:3, 1:3] = [[np.cos(3e-3), -np.sin(3e-3)], [np.sin(3e-3), np.cos(3e-3)]]
+    *before, last, tool = dh.file_frames
+    tilted = replace(dh, file_frames=(*before, last @ tilt, tool))
+    elevation = find_task("position-pitch", "y")
+    assert freedoms_moved(tilted, elevation) == 4 and not fits(tilted, elevation)
+    names = [task.name for task in fitting_tasks(tilted)]
+    assert names == ["position-yaw", "position-yaw:y", "pose"]
+
+
+PAN_TILT = """<robot name="pan_tilt">
+  <link name="base"/><link name="yoke"/><link name="head"/><link name="camera"/><link name="optical"/>
+  <joint name="pan" type="continuous"><parent link="base"/><child link="yoke"/><axis xyz="0 0 1"/></joint>
+  <joint name="tilt" type="revolute"><parent link="yoke"/><child link="head"/><axis xyz="0 -1 0"/>
+    <origin xyz="0 0 0.05"/><limit lower="{low}" upper="{high}"/></joint>
+  <joint name="mount" type="fixed"><parent link="head"/><child link="camera"/>
+    <origin xyz="0.05 0 0"/></joint>
+  <joint name="lens" type="fixed"><parent link="camera"/><child link="optical"/>
+    <origin rpy="-1.5707963267948966 0 -1.5707963267948966"/></joint>
+</robot>"""
+
+
+@pytest.mark.parametrize(
+    ("tip", "limits", "axis"),
+    [
+        ("camera", (-0.5, 1.57), "x"),  # which looks ahead; z points along the first axis at 0
+        ("optical", (-0.5, 1.57), "z"),  # which looks ahead
+        ("camera", (0.4, 1.57), "z"),  # it is vertical nowhere there, and what comes first
+        ("camera", (-2.0, 2.0), "z"),  # each is vertical somewhere
+    ],
+)
+def test_a_direction_is_of_an_axis_that_points_along_the_first_joint_nowhere_inside(
+    tmp_path: Path, tip: str, limits: tuple[float, float], axis: str
+) -> None:
+    path = tmp_path / "pan_tilt.urdf"
+    path.write_text(PAN_TILT.format(low=limits[0], high=limits[1]))
+    task = fitting_tasks(read(Request(path, tip=tip)).dh)[0]
+    assert (task.stem, task.axis) == ("direction", axis)
+
+
 def test_six_joints_take_the_whole_pose() -> None:
     assert [task.name for task in fitting_tasks(chain("ur5e.urdf"))] == ["pose"]
 

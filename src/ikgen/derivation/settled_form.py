@@ -22,6 +22,7 @@ def settled_form(found: ClosedForm, progress: Progress) -> tuple[ClosedForm, Pro
     from ikgen.derivation.fewest_sets import with_fewest_sets
     from ikgen.lowering.elimination_program import elimination_program
     from ikgen.lowering.lower import lower
+    from ikgen.tasks.fitting import heading_shortened
 
     dh = found.reading.dh
     if found.plan:
@@ -31,8 +32,10 @@ def settled_form(found: ClosedForm, progress: Progress) -> tuple[ClosedForm, Pro
     def solve(passed_over: tuple[Variable, ...]) -> SolutionGraph:
         return by_rules(dh, found.task, progress, passed_over)
 
+    shortened = heading_shortened(dh, found.task)
+
     def lowered(graph: SolutionGraph) -> Program:
-        return lower(graph, model_error=2.0 * max(dh.deviation))
+        return lower(graph, model_error=2.0 * max(dh.deviation), shortened=shortened)
 
     graph, program = with_fewest_sets(found.graph, lowered, solve)
     return replace(found, graph=graph), program

@@ -24,6 +24,9 @@ __all__ = ["CLOSE", "SolverModule", "is_rounded", "most_rows"]
 CLOSE = 8e-10
 """Deviation up to which a row that is exact for the solved geometry is right for the file (1e-9)."""
 
+_POSE_ROUND_OFF = 4e-15
+"""Error (m) of a pose's position for each metre that it is away, behind a chain of products."""
+
 FAR = 1.5e-5
 """Deviation (rad or m) above which a closed-form row may be too far from the file's solution for Newton
 steps near folds, at regular configurations too."""
@@ -117,8 +120,10 @@ class SolverModule:
 
     @property
     def policy(self) -> SolvePolicy:
-        """The tolerances of `solve`, five of them of this arm.
+        """The tolerances of `solve`, six of them of this arm.
 
+        - `exact`: no less than the round-off of entries of the pose, whose digits a base that is far away
+          takes.
         - `limit_tolerance`: over `most_driven` and what of the arm's size is more than 1 m, as a joint put
           on its limit moves the tool that many times as far.
         - `fold_reach`: below it a second solution of the file may lie beside a row; grows with the root of
@@ -134,12 +139,21 @@ class SolverModule:
         root, farther = math.sqrt(off), self.dh.most_driven * max(1.0, self.size)
         return replace(
             plain,
+            exact=max(
+                plain.exact,
+                _POSE_ROUND_OFF * self._away / self.size,
+            ),
             limit_tolerance=plain.limit_tolerance / farther,
             fold_reach=max(plain.fold_reach, plain.fold * root),
             beside_reach=plain.anywhere if self.far else plain.fold * root,
             broken_reach=plain.broken_reach * off,
             fold_product=plain.fold_product * off,
         )
+
+    @property
+    def _away(self) -> float:
+        """How far (m) the arm stands from the frame of its poses."""
+        return float(np.abs(self.dh.file_frames[0][:3, 3]).max())
 
     @property
     def beside(self) -> tuple[NDArray[np.float64], ...]:

@@ -21,6 +21,9 @@ _WIDER = 1000.0
 """As many times as large where an unknown may have lost digits: each step that follows from it may multiply
 what it is off, and which does is known of no single one. Newton steps tell."""
 
+_TILTED = 2.0
+"""Error of a row (rad) over what its heading's squared length is short of, at most."""
+
 _UNSEEN = 1e-12
 """Round-off (rad, m) that rows may keep near folds too. Where it leaves more, it does so in most rows:
 those far from folds stay as they are."""
@@ -30,8 +33,9 @@ _SHARE = 1e-4
 singular value."""
 
 
-def require_closure(work: Placement) -> None:
-    """A row is returned only if it reproduces the pose: the cheapest split is compared."""
+def require_closure(work: Placement, shortened: float = 0.0) -> None:
+    """A row is returned only if it reproduces the pose: the cheapest split is compared. A heading counts
+    for where it points, though a tilt of the tool has `shortened` its squared length by so much."""
 
     def cost(parts: tuple[list[Expr], list[Expr]]) -> float:
         return work.price([*parts[0], *parts[1]])
@@ -43,12 +47,13 @@ def require_closure(work: Placement) -> None:
     residuals = min((_residuals(work, k, m) for k, m in splits), key=cost)
     work.place(Comment("does the row reproduce the pose?"))
     limit = max(CHECK_TOLERANCE, min(1000 * work.model_error, 0.2))
+    turned = max(limit, _TILTED * shortened)
     size = max(arm_size(work.dh), 1.0)
     for level in range(len(work.levels)):
         norms = [e for e in work.norms if work.level(e) == level]
-        _bounded(work, norms, limit)
-    for parts, scale in zip(residuals, (size, 1.0), strict=True):
-        _bounded(work, parts, limit, scale)
+        _bounded(work, norms, turned)
+    for parts, least, scale in zip(residuals, (limit, turned), (size, 1.0), strict=True):
+        _bounded(work, parts, least, scale)
 
 
 def _bounded(work: Placement, parts: list[Expr], limit: float, scale: float = 1.0) -> None:

@@ -33,11 +33,12 @@ _COARSE = 1e-9
 """Bound on what a joint value is off (rad or m) above which most of its rows are not right as they are."""
 
 
-def lower(graph: SolutionGraph, *, model_error: float = 0.0) -> Program:
+def lower(graph: SolutionGraph, *, model_error: float = 0.0, shortened: float = 0.0) -> Program:
     """The Program of a solution graph.
 
     `model_error` is how far (m or rad) the file's geometry may be off the exact one that was solved: square
-    roots and the final check give way by that much, and rows are refined on the file's chain.
+    roots and the final check give way by that much, and rows are refined on the file's chain. `shortened`:
+    by how much a tilt of the tool takes the squared length of a heading from 1, at most.
     """
     work = Placement(graph, model_error)
     bind_pose(work)
@@ -46,7 +47,7 @@ def lower(graph: SolutionGraph, *, model_error: float = 0.0) -> Program:
     for index, step in enumerate(graph.steps):
         _step(work, index, step)
     values = _joint_values(work)
-    require_closure(work)
+    require_closure(work, shortened)
     _place_values(work, values)
     return replace(trimmed(serialize(work, values)), coarse=_coarse(work, values))
 

@@ -24,6 +24,7 @@ __all__ = [
     "freedoms_barely_moved",
     "freedoms_fixed",
     "freedoms_moved",
+    "heading_shortened",
     "keeps_heading_level",
     "motion_ratios",
     "over_constrained",
@@ -43,6 +44,9 @@ _ROUND_OFF = 2e-9
 _BARELY = 0.02
 """A task conditioned worse than another by this factor comes behind it: a tilt by rounding moves its
 freedoms."""
+
+_EDGE = 0.05
+"""Share of a joint's range at either end, and of configurations, that does not decide which axis suits."""
 
 _AS_GOOD = 0.5
 """The task's first axis is taken unless another suits the arm better by this factor."""
@@ -68,13 +72,24 @@ def fitting_tasks(dh: DHChain, axis: str | None = None) -> tuple[Task, ...]:
 def _along(dh: DHChain, task: Task, axes: Sequence[str]) -> list[Task]:
     """The task by those of the axes by which it fits, the one that suits the arm best first."""
     ways = [task.along(axis) for axis in axes] if task.axis else [task]
-    rated = {way: _condition(dh, way) * _level(dh, way) for way in ways if fits(dh, way)}
+    rated = {way: _suits(dh, way) for way in ways if fits(dh, way)}
     best = max(rated.values(), default=0.0)
 
     def key(way: Task) -> tuple[bool, float]:
         return way.name != task.name or rated[way] < _AS_GOOD * best, -rated[way]
 
     return sorted(rated, key=key)
+
+
+def _suits(dh: DHChain, task: Task) -> float:
+    """How well the task's axis suits the arm: a direction alone by the worst in the middle of the joints'
+    ranges, where a pan-tilt is not to turn the axis about itself."""
+    if task.position or task.orientation != "direction":
+        return _condition(dh, task) * _level(dh, task)
+    low, high = joint_box(dh, reach(dh))
+    share = np.random.default_rng(0).uniform(_EDGE, 1.0 - _EDGE, (256, dh.dof))
+    ratios = _all_ratios(_moved(dh, task, low + share * (high - low)))
+    return float(f"{np.quantile(ratios[:, -1], _EDGE):.2g}")
 
 
 def _level(dh: DHChain, task: Task) -> float:
@@ -89,8 +104,9 @@ def _level(dh: DHChain, task: Task) -> float:
 
 def fits(dh: DHChain, task: Task) -> bool:
     """Whether the joints that are not held move the task's freedoms independently of each other."""
-    if task.orientation == "yaw" and not keeps_heading_level(dh, task.axis):
-        return False  # a heading is well-defined where the tool's axis stays horizontal
+    level = task.orientation in ("yaw", "pitch") and keeps_heading_level(dh, task.axis)
+    if task.orientation == ("pitch" if level else "yaw"):
+        return False  # an axis that stays horizontal has a heading and no elevation, others the reverse
     return freedoms_moved(dh, task) == dh.moving
 
 
@@ -109,6 +125,14 @@ def freedoms_fixed(dh: DHChain, task: Task) -> int:
 def keeps_heading_level(dh: DHChain, axis: str) -> bool:
     """Whether the tool's axis stays horizontal, so that its heading is a unit vector."""
     return bool(_shortened(dh, axis).max() < _LEVEL)
+
+
+def heading_shortened(dh: DHChain, task: Task) -> float:
+    """By how much the squared length of a heading falls short of 1, at most, where that is so little that
+    its direction alone counts; 0 for other tasks."""
+    if task.orientation != "yaw" or not keeps_heading_level(dh, task.axis):
+        return 0.0
+    return min(LEVEL, 2.0 * float(_shortened(dh, task.axis).max()))
 
 
 def _shortened(dh: DHChain, axis: str) -> Array:
@@ -142,15 +166,26 @@ def _condition(dh: DHChain, task: Task) -> float:
 
 def _ratios(dh: DHChain, task: Task) -> Array:
     """Singular values of the task's motion over the largest, their median over the samples."""
-    moving = [j for j, joint in enumerate(dh.joints) if joint.name not in dh.free]
-    return motion_ratios(scaled_motion(dh, task)[..., moving]) if moving else np.empty(0)
+    motions = _moved(dh, task)
+    return motion_ratios(motions) if motions.size else np.empty(0)
 
 
 def motion_ratios(motions: Array) -> Array:
     """Singular values of motions (..., N, entries, joints) over the largest, their median over the N
     samples: (..., k)."""
+    return np.asarray(np.median(_all_ratios(motions), axis=-2))
+
+
+def _all_ratios(motions: Array) -> Array:
+    """Singular values (..., k) of motions (..., entries, joints) over the largest."""
     singular = np.linalg.svd(motions, compute_uv=False)
-    return np.asarray(np.median(singular / np.maximum(singular[..., :1], 1e-12), axis=-2))
+    return np.asarray(singular / np.maximum(singular[..., :1], 1e-12))
+
+
+def _moved(dh: DHChain, task: Task, q: Array | None = None) -> Array:
+    """`scaled_motion` by the joints that are not held."""
+    moving = [j for j, joint in enumerate(dh.joints) if joint.name not in dh.free]
+    return np.asarray(scaled_motion(dh, task, q)[..., moving])
 
 
 def scaled_motion(dh: DHChain, task: Task, q: Array | None = None) -> Array:
