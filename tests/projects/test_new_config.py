@@ -70,18 +70,32 @@ def test_arms_that_share_a_trunk_begin_where_they_part(tmp_path: Path) -> None:
     assert len(load_config(tmp_path / "ikgen.toml")) == 2
 
 
-def joint(name: str, parent: str) -> str:
+def joint(name: str, parent: str, axis: str = "0 0 1") -> str:
     return (
         f'<joint name="{name}" type="revolute"><parent link="{parent}"/><child link="{name}_link"/>'
-        '<origin xyz="0.1 0.2 0.3"/><axis xyz="0 0 1"/>'
+        f'<origin xyz="0.1 0.2 0.3"/><axis xyz="{axis}"/>'
         '<limit lower="-1" upper="1" effort="1" velocity="1"/></joint>'
         f'<link name="{name}_link"/>'
     )
 
 
-def branch(side: str, names: tuple[str, ...]) -> str:
+def branch(side: str, names: tuple[str, ...], second: str = "1 0 0") -> str:
+    """Joints about the y axis, the second one about another."""
     parents = ("waist_link", *(f"{side}_{name}_link" for name in names))
-    return "".join(joint(f"{side}_{n}", p) for n, p in zip(names, parents, strict=False))
+    axes = ["0 1 0", second, *["0 1 0"] * (len(names) - 2)]
+    return "".join(map(joint, (f"{side}_{n}" for n in names), parents, axes))
+
+
+def test_branches_that_move_in_a_plane_have_the_joint_that_turns_it(tmp_path: Path) -> None:
+    """The two sides of a palletizer's parallelogram part behind its column."""
+    arms = "".join(branch(side, ("x", "y", "z", "end"), "0 1 0") for side in ("rod", "arm"))
+    path = tmp_path / "palletizer.urdf"
+    path.write_text(
+        f'<robot name="t"><link name="base_link"/>{joint("waist", "base_link")}{arms}</robot>'
+    )
+    assert [(a.base, a.dof, a.trunk) for a in robot_arms(Request(path))] == [
+        ("base_link", 5, "") for _ in range(2)
+    ]
 
 
 def test_names_that_tips_share_are_told_apart(tmp_path: Path) -> None:

@@ -76,7 +76,7 @@ def robot_arms(request: Request, tree: JointTree | None = None) -> tuple[ArmTabl
             f"no arm found in '{tree.name}'{below}",
             hint="write [[arm]] tables with base and tip by hand; ikgen inspect shows the links",
         )
-    arms = [_arm(tree.name, tip, ways, several) for tip, ways in chains.items()]
+    arms = [_arm(tree, tip, ways, several) for tip, ways in chains.items()]
     fit = [arm for arm in arms if arm.dof <= MOST_AXES]
     if not fit:
         _chain(tree, arms[0].base, arms[0].tip or "", several)  # says what is too many
@@ -102,15 +102,27 @@ def _chain(tree: JointTree, base: str | None, tip: str, several: bool) -> ArmTab
     return ArmTable(name, chain.base_link, tip, chain.dof)
 
 
-def _arm(robot: str, tip: str, ways: Sequence[ChainCandidate], several: bool) -> ArmTable:
+def _arm(tree: JointTree, tip: str, ways: Sequence[ChainCandidate], several: bool) -> ArmTable:
     """The arm to a tip: from where it parts from others, if enough of it is left to be an arm."""
     from ikgen.chains.grippers import ARM_JOINTS
 
     whole = max(ways, key=lambda chain: chain.dof)
     own = min(ways, key=lambda chain: (chain.dof < ARM_JOINTS, chain.dof))
-    trunk = whole.base if own is not whole and own.dof >= ARM_JOINTS else ""
-    taken = own if trunk else whole
-    return ArmTable(arm_name(robot, tip if several else ""), taken.base, tip, taken.dof, trunk)
+    apart = own is not whole and own.dof >= ARM_JOINTS and _leaves_a_plane(tree, own)
+    taken, trunk = (own, whole.base) if apart else (whole, "")
+    return ArmTable(arm_name(tree.name, tip if several else ""), taken.base, tip, taken.dof, trunk)
+
+
+def _leaves_a_plane(tree: JointTree, chain: ChainCandidate) -> bool:
+    """Whether the joints of a chain take its tip anywhere: those of one side of a parallelogram, behind the
+    joint that turns both, move it in a plane."""
+    from ikgen.chains.selection import select_chain
+    from ikgen.kinematics.modified_dh import to_dh
+    from ikgen.tasks import POSITION
+    from ikgen.tasks.fitting import freedoms_moved
+
+    dh = to_dh(select_chain(tree, chain.base, chain.tip))
+    return freedoms_moved(dh, POSITION) == POSITION.freedoms
 
 
 def _told_apart(arms: Iterable[ArmTable], taken: Iterable[str] = ()) -> list[ArmTable]:
