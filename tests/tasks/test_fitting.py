@@ -18,6 +18,7 @@ from ikgen.model.entry_names import ENTRY_NAMES
 from ikgen.records.request import Request
 from ikgen.tasks import AXES, TASKS, WHOLE_POSE, Task, find_task, smaller_tasks
 from ikgen.tasks.fitting import (
+    default_tasks,
     fits,
     fitting_tasks,
     freedoms_fixed,
@@ -211,6 +212,15 @@ def test_a_direction_is_of_an_axis_that_points_along_the_first_joint_nowhere_ins
     path.write_text(PAN_TILT.format(low=limits[0], high=limits[1]))
     task = fitting_tasks(read(Request(path, tip=tip)).dh)[0]
     assert (task.stem, task.axis) == ("direction", axis)
+
+
+def test_two_links_in_a_plane_are_solved_for_a_position() -> None:
+    """No task fits them; of those that do not their position has both elbows."""
+    dh = chain("scara_standard.toml")
+    planar = replace(dh, free=tuple(joint.name for joint in dh.joints[2:]))
+    assert [task.name for task in fitting_tasks(planar)] == ["pose"]
+    assert [task.name for task in default_tasks(planar)] == ["position", "pose"]
+    assert default_tasks(dh) == fitting_tasks(dh)
 
 
 def test_six_joints_take_the_whole_pose() -> None:

@@ -73,14 +73,14 @@ def best_task(reading: Reading, demand: Demand, short: float | None = None) -> C
     by an elimination before the whole pose, which fewer joints than six can take here and there only.
     `short`: as for `task_form`."""
     from ikgen.tasks import find_task
-    from ikgen.tasks.fitting import fitting_tasks
+    from ikgen.tasks.fitting import default_tasks
 
     dh = reading.dh
     if demand.task:
         tasks = [find_task(demand.task)]
     else:
-        fitting = fitting_tasks(dh, demand.axis)
-        tasks = [task for task in fitting if task.name not in demand.passed_over]
+        default = default_tasks(dh, demand.axis)
+        tasks = [task for task in default if task.name not in demand.passed_over]
     first: ClosedForm | None = None
     for task in tasks:
         if first is not None and task.whole_pose:

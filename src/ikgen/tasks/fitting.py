@@ -12,13 +12,14 @@ from ikgen.kinematics.axis_relations import reach
 from ikgen.kinematics.forward import file_forward, file_slopes
 from ikgen.kinematics.joint_box import joint_box
 from ikgen.program.policy import LEVEL
-from ikgen.tasks import AXES, POSE, TASKS, Task
+from ikgen.tasks import AXES, POSE, POSITION, TASKS, Task
 
 if TYPE_CHECKING:
     from ikgen.model.arrays import Array
     from ikgen.model.dh import DHChain
 
 __all__ = [
+    "default_tasks",
     "fits",
     "fitting_tasks",
     "freedoms_barely_moved",
@@ -67,6 +68,14 @@ def fitting_tasks(dh: DHChain, axis: str | None = None) -> tuple[Task, ...]:
     rated = {way: _condition(dh, way) for way in found}
     least = _BARELY * max(rated.values(), default=0.0)
     return (*sorted(found, key=lambda way: rated[way] < least), POSE)
+
+
+def default_tasks(dh: DHChain, axis: str | None = None) -> tuple[Task, ...]:
+    """`fitting_tasks`, and where none fits before the whole pose the position, if that takes all joints:
+    two links in a plane have both elbows for it, and one for a pose."""
+    fitting = fitting_tasks(dh, axis)
+    alone = len(fitting) == 1 and freedoms_moved(dh, POSITION) == dh.moving
+    return (POSITION, *fitting) if alone and axis is None else fitting
 
 
 def _along(dh: DHChain, task: Task, axes: Sequence[str]) -> list[Task]:
