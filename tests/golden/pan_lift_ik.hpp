@@ -1970,10 +1970,8 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
     note(b);
     find_across(last, a);
     for (const double side : {kAside, -kAside}) {
-      double q[Arm::kDof], largest = 0.0;
-      std::copy_n(a.q, Arm::kDof, q);
-      for (const double x : a.still) largest = std::max(largest, std::abs(x));
-      for (int k = 0; k < Fold::kMoving; ++k) q[Fold::kJoints[k]] += side / largest * a.still[k];
+      double q[Arm::kDof];
+      step_along(a.q, a.still, side, q);
       for (const bool anew : {false, true}) {
         const Sample first = at(q, a, anew);
         const bool keeps = Curve::fold.in_sense();
@@ -1992,6 +1990,13 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
     for (double& x : s.out) x *= 0.1;  // of no sense yet
   }
 
+  static void step_along(const double* from, const typename Fold::Vector& along, double by, double* q) noexcept {
+    double largest = 0.0;
+    std::copy_n(from, Arm::kDof, q);
+    for (const double x : along) largest = std::max(largest, std::abs(x));
+    for (int k = 0; k < Fold::kMoving; ++k) q[Fold::kJoints[k]] += by / largest * along[k];
+  }
+
   bool follow(const Sample& first, double sense, bool keeps, double& worst, Passed& passed) noexcept {
     Sample b = first;
     if (sense < 0.0) Curve::turn_round(b);
@@ -2003,8 +2008,9 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
     double reach = Policy::kTryStep, last = reach, from = kInfinity, before[Fold::kMoving];  // from: where it settled
     std::copy_n(b.still, Fold::kMoving, before);
     for (int k = 0; k < kMost && samples > 0; ++k) {
-      double q[Arm::kDof];
-      step_on(b, before, 0.5 * reach / last, reach, q);
+      double q[Arm::kDof], course[Fold::kMoving];  // as the curve turned since the sample before
+      for (int i = 0; i < Fold::kMoving; ++i) course[i] = b.still[i] + 0.5 * reach / last * (b.still[i] - before[i]);
+      step_along(b.q, course, reach, q);
       const Sample c = at(q, b);
       const bool now = Curve::fold.in_sense();
       if (!(c.on && ahead(b, c, reach))) {
@@ -2040,16 +2046,6 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
     }
     ended = false;
     return true;
-  }
-
-  static void step_on(const Sample& b, const double* before, double turn, double reach, double* q) noexcept {
-    double course[Fold::kMoving], largest = 0.0;
-    std::copy_n(b.q, Arm::kDof, q);
-    for (int i = 0; i < Fold::kMoving; ++i) {
-      course[i] = b.still[i] + turn * (b.still[i] - before[i]);
-      largest = std::max(largest, std::abs(course[i]));
-    }
-    for (int i = 0; i < Fold::kMoving; ++i) q[Fold::kJoints[i]] += reach / largest * course[i];
   }
 
   int passed_part(const Passed& passed, const Sample& s) noexcept {

@@ -1302,6 +1302,7 @@ _NEAR = 1e-8  # rad or m off the curve at which what is left is that of the curv
 _SHARE = 3e-2  # over what is left: as little as that off the curve changes neither
 _ALMOST = 1e-3  # rad or m off the curve at which corrections may end if they change nothing of what is left
 _SAME = 4e-15  # rad or m: corrections that change what is left by less change nothing of it
+
 _STRAY = 1.0  # rad or m: larger corrections show that no curve is near
 
 
@@ -1310,7 +1311,9 @@ def _samples_beside(arm: _Arm, q: Array, T: Array) -> _Reduced:
     error, slope = _linearized(arm, q, T)
     nothing, still = np.zeros(len(q)), _still_directions(arm, slope)
     unknown = 0.1 * _generic(len(q), error.shape[1])  # shorter than what has a sense
-    return _sampled(arm, _Reduced(q, still, unknown, nothing, nothing), T)[0]
+    first = _Reduced(q, still, unknown, nothing, nothing)
+    at = _sampled(arm, first, T)[0]
+    return at
 
 
 def _sampled(arm: _Arm, at: _Reduced, T: Array) -> tuple[_Reduced, _Flags, _Flags]:

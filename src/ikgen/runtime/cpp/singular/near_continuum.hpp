@@ -71,6 +71,16 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
     return kind;
   }
 
+  // From both sides of a configuration: where another curve nearly crosses, corrections lead astray.
+  void trace_aside(const double* start, Passed& passed) noexcept {
+    const auto begin = Curve::fold.begin(start);
+    for (const double side : {kAside, -kAside}) {
+      double q[Arm::kDof];
+      step_along(start, begin.still, side, q);
+      if (trace(q, passed) != Kind::None) return;
+    }
+  }
+
   // Whether a configuration is on curves that were passed.
   bool passes(const Passed& passed, const double* q) noexcept { return passed_part(passed, at(q)) > 0; }
 
@@ -130,10 +140,8 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
     note(b);
     find_across(last, a);
     for (const double side : {kAside, -kAside}) {
-      double q[Arm::kDof], largest = 0.0;
-      std::copy_n(a.q, Arm::kDof, q);
-      for (const double x : a.still) largest = std::max(largest, std::abs(x));
-      for (int k = 0; k < Fold::kMoving; ++k) q[Fold::kJoints[k]] += side / largest * a.still[k];
+      double q[Arm::kDof];
+      step_along(a.q, a.still, side, q);
       for (const bool anew : {false, true}) {
         const Sample first = at(q, a, anew);
         const bool keeps = Curve::fold.in_sense();
@@ -154,6 +162,14 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
     for (double& x : s.out) x *= 0.1;  // of no sense yet
   }
 
+  // The place beside another in a direction, the fastest joint by so much.
+  static void step_along(const double* from, const typename Fold::Vector& along, double by, double* q) noexcept {
+    double largest = 0.0;
+    std::copy_n(from, Arm::kDof, q);
+    for (const double x : along) largest = std::max(largest, std::abs(x));
+    for (int k = 0; k < Fold::kMoving; ++k) q[Fold::kJoints[k]] += by / largest * along[k];
+  }
+
   // On from a sample, the fastest joint by Policy::kTryStep from one to the next, or by less where corrections converge
   // from there alone; whether it comes back to where it began. If that is beside the curve it ends where it comes back to a
   // sample that has settled.
@@ -168,8 +184,9 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
     double reach = Policy::kTryStep, last = reach, from = kInfinity, before[Fold::kMoving];  // from: where it settled
     std::copy_n(b.still, Fold::kMoving, before);
     for (int k = 0; k < kMost && samples > 0; ++k) {
-      double q[Arm::kDof];
-      step_on(b, before, 0.5 * reach / last, reach, q);
+      double q[Arm::kDof], course[Fold::kMoving];  // as the curve turned since the sample before
+      for (int i = 0; i < Fold::kMoving; ++i) course[i] = b.still[i] + 0.5 * reach / last * (b.still[i] - before[i]);
+      step_along(b.q, course, reach, q);
       const Sample c = at(q, b);
       const bool now = Curve::fold.in_sense();
       if (!(c.on && ahead(b, c, reach))) {
@@ -205,17 +222,6 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
     }
     ended = false;
     return true;
-  }
-
-  // The place a step on from a sample, as the curve turned since the direction `before`.
-  static void step_on(const Sample& b, const double* before, double turn, double reach, double* q) noexcept {
-    double course[Fold::kMoving], largest = 0.0;
-    std::copy_n(b.q, Arm::kDof, q);
-    for (int i = 0; i < Fold::kMoving; ++i) {
-      course[i] = b.still[i] + turn * (b.still[i] - before[i]);
-      largest = std::max(largest, std::abs(course[i]));
-    }
-    for (int i = 0; i < Fold::kMoving; ++i) q[Fold::kJoints[i]] += reach / largest * course[i];
   }
 
   // The end of the part of passed curves that goes through a sample, or 0.

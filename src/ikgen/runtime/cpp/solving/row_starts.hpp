@@ -104,6 +104,8 @@ template <class Arm> struct RowStart {
   bool add_around(const Aim& aim, typename NearContinuum<Arm>::Passed& passed, Places& out) noexcept {
     NearContinuum<Arm> curve(aim);
     const bool none = curve.trace(start, passed) == NearContinuum<Arm>::Kind::None;
+    if constexpr (Arm::kRounded)
+      if (none) curve.trace_aside(start, passed);
     RowStart aside(*this);
     if (!none) error = kInfinity;
     for (int k = 0; k < curve.count; ++k) (none ? aside : *this).take(aim, curve.found[k], out);

@@ -1,4 +1,9 @@
-"""Motions of the tool to poses beside, where roots come apart."""
+"""Motions of the tool to poses beside, where roots come apart.
+
+Newton's method takes back what right angles made coincide. Farther off what more than two solutions that
+meet become is not real, or far from them, but regular ones come apart of which more than two share the
+hidden angle; closer by an elimination that has no rank at the pose leaves no digits.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +24,4 @@ def _displaced(by: float) -> tuple[Array, Array]:
     return X, inverses(X)
 
 
-# Newton's method takes back what right angles made coincide. Farther off what more than two solutions that
-# meet become is not real, or far from them, but regular ones come apart of which more than two share the
-# hidden angle; closer by an elimination that has no rank at the pose leaves no digits.
 ASIDE, FARTHER, CLOSE = _displaced(1e-3), _displaced(0.03), (_displaced(1e-6), _displaced(1e-8))

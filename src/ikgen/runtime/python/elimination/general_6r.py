@@ -154,12 +154,11 @@ def six_joint_rows(
     """All real solutions of the six joints for poses T (N, 4, 4): pose indices (k,) in order, joint values
     (k, 6), angles in (-pi, pi], sorted, and which poses (N,) may have more, or some though none was found.
 
-    One run of the first is enough where each of its roots is clearly real, or clearly not, and there are
-    as many solutions as real roots, each found to many digits. Otherwise more runs follow, with the pose
-    displaced to both sides, by the next elimination and with the pose displaced by less, until they find
-    all that is known and no more, an even number, none stalls near another, and one of the pose itself has
-    kept its rank; where solutions meet, displaced poses have more roots, or the pose's own do not tell how
-    many are real, so has the next elimination.
+    One run of the first is enough where its roots are clearly real, or clearly not, and lead to as many
+    solutions, each to many digits. Otherwise more runs follow, with the pose displaced to both sides, by
+    the next elimination and with the pose displaced by less, until they find all that is known and no more,
+    an even number, none stalls near another, and one of the pose itself has kept its rank; so has the next
+    elimination where solutions meet, displaced poses have more roots, or the pose's own do not tell.
     """
     T = T.copy()
     T[:, :3, 3] /= plan.length
@@ -212,12 +211,13 @@ def _noted(
     run: int,
     marks: tuple[Index, Flags, Flags],
 ) -> Index:
-    """Enters what a run tells of the poses `todo` by its `real` roots (m, k), those of the pose itself
-    first if it is its `own`: of all poses (N,) how many solutions there are at least, which may have some,
-    whatever is found, and whose own roots do not tell. The most roots (k,) of a displaced pose.
+    """Enters what a run, 0 where the first elimination begins, tells of the poses `todo` by its `real`
+    roots (m, k), those of the pose itself first if it is its `own`: of all poses (N,) how many solutions
+    there are at least, which may have some, whatever is found, and whose own roots do not tell. The most
+    roots (k,) of a displaced pose.
 
-    `run` is 0 where the first elimination begins. That a pose has none is believed of another one whose
-    roots tell so clearly, if those of the first do too, or displaced poses have none either."""
+    That a pose has none is believed of another elimination whose roots tell so clearly, if those of the
+    first do too, or displaced poses have none either."""
     least, unsure, blurred = marks
     if own and run >= 0:
         least[todo] = np.maximum(least[todo], real[0])

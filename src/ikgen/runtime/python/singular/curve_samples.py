@@ -7,7 +7,7 @@ import numpy as np
 from ikgen.runtime.python.arm.solved_arm import Arm
 from ikgen.runtime.python.arrays.array_tuples import some_of
 from ikgen.runtime.python.arrays.array_types import Array, Flags
-from ikgen.runtime.python.newton.arm_newton import linearized
+from ikgen.runtime.python.newton.arm_newton import linearized, moved_rows
 from ikgen.runtime.python.singular.fold_pair import Reduced, correct, generic, still_directions
 
 __all__ = ["SOLVED", "sampled", "samples_beside"]
@@ -20,6 +20,7 @@ _NEAR = 1e-8  # rad or m off the curve at which what is left is that of the curv
 _SHARE = 3e-2  # over what is left: as little as that off the curve changes neither
 _ALMOST = 1e-3  # rad or m off the curve at which corrections may end if they change nothing of what is left
 _SAME = 4e-15  # rad or m: corrections that change what is left by less change nothing of it
+_ASIDE = 0.4  # rad or m: so far from where they cross curves are apart
 _STRAY = 1.0  # rad or m: larger corrections show that no curve is near
 
 
@@ -28,7 +29,22 @@ def samples_beside(arm: Arm, q: Array, T: Array) -> Reduced:
     error, slope = linearized(arm, q, T)
     nothing, still = np.zeros(len(q)), still_directions(arm, slope)
     unknown = 0.1 * generic(len(q), error.shape[1])  # shorter than what has a sense
-    return sampled(arm, Reduced(q, still, unknown, nothing, nothing), T)[0]
+    first = Reduced(q, still, unknown, nothing, nothing)
+    at = sampled(arm, first, T)[0]
+    if arm.rounded:
+        _take_aside(arm, at, first, T)
+    return at
+
+
+def _take_aside(arm: Arm, at: Reduced, first: Reduced, T: Array) -> None:
+    """Takes samples from beside where they first were, along the still direction, if corrections from there
+    led astray: another curve nearly crosses."""
+    step = _ASIDE / np.abs(first.still).max(axis=1)[:, None] * first.still
+    for aside in (step, -step):
+        astray = np.flatnonzero(~(np.abs(at.left) < arm.policy.fold_reach))
+        some = some_of(first._replace(q=moved_rows(arm, first.q, aside)), astray)
+        for whole, part in zip(at, sampled(arm, some, T[astray])[0]):
+            whole[astray] = part
 
 
 def sampled(arm: Arm, at: Reduced, T: Array) -> tuple[Reduced, Flags, Flags]:
