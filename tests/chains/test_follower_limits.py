@@ -34,6 +34,11 @@ def test_a_follower_that_leaves_its_limits_is_named(tmp_path: Path) -> None:
     assert text.endswith("and hold while 'waist' is from -1 to 1")
 
 
+def test_nothing_is_said_to_be_less_than_nothing(tmp_path: Path) -> None:
+    text = said(tmp_path, multiplier="-1", own='lower="0.1" upper="0.9"')
+    assert text.endswith("and hold while 'waist' is from -0.8 to 0")
+
+
 def test_where_no_value_is_inside_both_none_is_given(tmp_path: Path) -> None:
     text = said(tmp_path, multiplier="-0.5", own='lower="2" upper="3"')
     assert text.endswith("its own limits, 2 and 3, are not looked at")

@@ -36,7 +36,7 @@ def _beyond(joint: Joint, coupling: Coupling, free: Mapping[str, Limits]) -> str
     room = _BEYOND * (own.upper - own.lower)
     if own.lower - room <= ends[0] and ends[1] <= own.upper + room:
         return ""
-    inside = sorted((end - coupling.offset) / factor for end in (own.lower, own.upper))
+    inside = sorted((end - coupling.offset) / factor + 0.0 for end in (own.lower, own.upper))
     low, high = max(inside[0], given.lower), min(inside[1], given.upper)
     text = (
         f"joint '{joint.name}' follows '{driver.name}' from {ends[0]:.6g} to {ends[1]:.6g}: its own "
