@@ -139,10 +139,7 @@ class SolverModule:
         root, farther = math.sqrt(off), self.dh.most_driven * max(1.0, self.size)
         return replace(
             plain,
-            exact=max(
-                plain.exact,
-                _POSE_ROUND_OFF * self._away / self.size,
-            ),
+            exact=max(plain.exact, _POSE_ROUND_OFF * self._away / self.size),
             limit_tolerance=plain.limit_tolerance / farther,
             fold_reach=max(plain.fold_reach, plain.fold * root),
             beside_reach=plain.anywhere if self.far else plain.fold * root,

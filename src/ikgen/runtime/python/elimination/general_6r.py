@@ -56,7 +56,7 @@ _SIX = range(6)
 DIRECT = 1e-7
 # Error of one that stalls where more than two solutions meet: steps get no closer there in reasonable time.
 _STALLED = 1e-6
-_OTHERS = 2  # from this run on
+_OTHERS = 2  # the run from which other eliminations follow the first one
 # Smallest singular value where solutions meet: rows keep few digits there, and so close together are one.
 _MEETS, _CLOSE_BY = 1e-6, 1e-3
 # Beside a fold rows of several runs are one only where all have all their digits.
