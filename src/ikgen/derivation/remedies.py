@@ -133,11 +133,13 @@ def _most_attempts(dh: DHChain) -> int:
 
 def _choices(unsolved: Unsolved) -> Iterator[tuple[Task, HeldChoice | None]]:
     """The choices of joints to hold that were not tried for the task, then smaller tasks, with as many
-    joints held as move in vain (None: none), without those that are refused when asked for."""
+    joints held as move in vain (None: none), without those that are refused when asked for or fix more than
+    these joints move."""
     from ikgen.derivation.closed_forms import rule_tries
     from ikgen.derivation.held_joints import held_choices
     from ikgen.derivation.held_needs import rounding_decides
     from ikgen.tasks import smaller_tasks
+    from ikgen.tasks.fitting import over_constrained
 
     reading, task = unsolved.reading, unsolved.task
     for choice in held_choices(reading, task)[rule_tries(reading.dh) :]:
@@ -146,6 +148,8 @@ def _choices(unsolved: Unsolved) -> Iterator[tuple[Task, HeldChoice | None]]:
         if rounding_decides(reading.dh, one):
             continue
         choices = held_choices(reading, one)
+        if over_constrained(choices[0].dh if choices else reading.dh, one):
+            continue
         if not choices:
             yield one, None
         for choice in choices:
