@@ -141,9 +141,10 @@ def _checked(
     regular = smallest_singular(dh, q, arm_size(dh)) > 1e-3
     task = find_task(module.TASK, getattr(module, "TOOL_AXIS", None))
     turning, space = revolute(module), task_space(task)
+    held = [module.JOINT_NAMES.index(name) for name in module.FREE_JOINTS]
     wrong = missed = 0
     for at, pose in zip(q[regular], dh_pose(dh, q[regular]), strict=True):
-        rows = module.solve(pose, limits=False).q
+        rows = module.solve(pose, free=at[held] if held else None, limits=False).q
         back = module.forward(rows).reshape(-1, 4, 4)
         error = np.abs(space.residual(back, np.broadcast_to(pose, back.shape)))
         wrong += int((error.max(axis=-1, initial=0.0) > 1e-8).sum())
