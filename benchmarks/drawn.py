@@ -9,7 +9,7 @@ from types import ModuleType
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["draw", "revolute", "smallest_singular"]
+__all__ = ["draw", "held_joints", "revolute", "smallest_singular"]
 
 Array = NDArray[np.float64]
 
@@ -23,6 +23,11 @@ def revolute(module: ModuleType) -> NDArray[np.bool_]:
     """Which joints turn (dof,): their columns of the Jacobian have an angular part."""
     q = np.full(len(module.LOWER), 0.3)
     return np.asarray(np.abs(module.jacobian(q)[3:]).max(axis=0) > 1e-12)
+
+
+def held_joints(module: ModuleType) -> list[int]:
+    """The numbers of the joints that are held, in the order of their values."""
+    return [module.JOINT_NAMES.index(name) for name in module.FREE_JOINTS]
 
 
 def draw(module: ModuleType, key: str, count: int) -> Array:
@@ -53,7 +58,7 @@ def _on_grid(q: Array, step: float, chosen: NDArray[np.bool_], turning: NDArray[
 def smallest_singular(module: ModuleType, q: Array) -> Array:
     """Smallest singular value (N,) of the Jacobian's rows that the task reads, in the joints that are
     not held; lengths in units of the arm's reach."""
-    free = [module.JOINT_NAMES.index(name) for name in module.FREE_JOINTS]
+    free = held_joints(module)
     active = [j for j in range(len(module.LOWER)) if j not in free]
     tips = module.forward(np.random.default_rng(0).uniform(-1.0, 1.0, (64, len(module.LOWER))))
     size = max(float(np.linalg.norm(tips[:, :3, 3], axis=1).max()), 1e-3)

@@ -14,7 +14,7 @@ from types import ModuleType
 import numpy as np
 
 from benchmarks.command_line import load_module
-from benchmarks.drawn import revolute
+from benchmarks.drawn import held_joints, revolute
 from benchmarks.random_tables import pattern, table_text
 from benchmarks.results import commit
 from benchmarks.solution_search import Array, apart, searched
@@ -141,7 +141,7 @@ def _checked(
     regular = smallest_singular(dh, q, arm_size(dh)) > 1e-3
     task = find_task(module.TASK, getattr(module, "TOOL_AXIS", None))
     turning, space = revolute(module), task_space(task)
-    held = [module.JOINT_NAMES.index(name) for name in module.FREE_JOINTS]
+    held = held_joints(module)
     wrong = missed = 0
     for at, pose in zip(q[regular], dh_pose(dh, q[regular]), strict=True):
         rows = module.solve(pose, free=at[held] if held else None, limits=False).q

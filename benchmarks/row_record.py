@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from benchmarks.command_line import Source, emit, load_module
 from benchmarks.cpp_speed import FLAGS, measure
-from benchmarks.drawn import draw, revolute, smallest_singular
+from benchmarks.drawn import draw, held_joints, revolute, smallest_singular
 
 __all__ = ["STATUS", "ArmRecord", "load", "record_arm", "save"]
 
@@ -90,7 +90,7 @@ def _closure(module: ModuleType, data: dict[str, NDArray[Any]]) -> float | None:
 
 
 def _answers(module: ModuleType, q: Array, poses: Array) -> dict[str, NDArray[Any]]:
-    free = [module.JOINT_NAMES.index(name) for name in module.FREE_JOINTS]
+    free = held_joints(module)
     rows, count, status, inside, inside_status, singular = [], [], [], [], [], []
     for at, pose in zip(q, poses, strict=True):
         held = at[free] if free else None

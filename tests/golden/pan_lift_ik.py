@@ -1302,8 +1302,13 @@ _NEAR = 1e-8  # rad or m off the curve at which what is left is that of the curv
 _SHARE = 3e-2  # over what is left: as little as that off the curve changes neither
 _ALMOST = 1e-3  # rad or m off the curve at which corrections may end if they change nothing of what is left
 _SAME = 4e-15  # rad or m: corrections that change what is left by less change nothing of it
-
+_ASIDE = 0.4  # rad or m: so far from where they cross curves are apart
 _STRAY = 1.0  # rad or m: larger corrections show that no curve is near
+
+
+def _aside(direction: Array) -> Array:
+    """Ways (k, n) from where curves cross to where they are apart, along directions (k, n)."""
+    return np.asarray(_ASIDE / np.abs(direction).max(axis=1)[:, None] * direction)
 
 
 def _samples_beside(arm: _Arm, q: Array, T: Array) -> _Reduced:
@@ -1955,7 +1960,6 @@ def _turned_inside(arm: _Arm, q: Array) -> Array:
 
 _CROSSINGS = 4  # crossings of a curve
 _HALVES = 4  # by which they are found
-_ASIDE = 0.4  # rad or m: so far from a crossing curves are apart
 
 
 class _Crossings(NamedTuple):
@@ -1994,9 +1998,8 @@ def _crossings_of(arm: _Arm, parts: _Parts, T: Array) -> _Crossings:
     at = _some_of(ends, 0)
     along, _ = _unit((parts.b.q - parts.a.q)[:, list(arm.moving)])  # the still direction turns there
     other = np.linalg.svd(_others(arm, at._replace(still=along), aim))[2][:, -2]
-    step = _ASIDE / np.abs(other).max(axis=1)[:, None] * other
     part = np.stack([parts.a.q, parts.b.q], axis=1)
-    return _Crossings(parts.owner, ends.q.swapaxes(0, 1), part, _moved_rows(arm, at.q, step))
+    return _Crossings(parts.owner, ends.q.swapaxes(0, 1), part, _moved_rows(arm, at.q, _aside(other)))
 
 
 def _keeps(arm: _Arm, at: _Reduced, T: Array) -> _Flags:

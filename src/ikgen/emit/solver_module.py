@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ikgen.elimination.plan import EliminationPlan
 from ikgen.kinematics.displacement import displacements
 from ikgen.kinematics.forward import dh_frames
-from ikgen.kinematics.position_unit import position_unit
+from ikgen.kinematics.position_unit import distance_away, position_unit
 from ikgen.kinematics.whole_turns import period_of
 from ikgen.model.dh import DHChain
 from ikgen.program.policy import SolvePolicy
@@ -139,18 +139,13 @@ class SolverModule:
         root, farther = math.sqrt(off), self.dh.most_driven * max(1.0, self.size)
         return replace(
             plain,
-            exact=max(plain.exact, _POSE_ROUND_OFF * self._away / self.size),
+            exact=max(plain.exact, _POSE_ROUND_OFF * distance_away(self.dh) / self.size),
             limit_tolerance=plain.limit_tolerance / farther,
             fold_reach=max(plain.fold_reach, plain.fold * root),
             beside_reach=plain.anywhere if self.far else plain.fold * root,
             broken_reach=plain.broken_reach * off,
             fold_product=plain.fold_product * off,
         )
-
-    @property
-    def _away(self) -> float:
-        """How far (m) the arm stands from the frame of its poses."""
-        return float(np.abs(self.dh.file_frames[0][:3, 3]).max())
 
     @property
     def beside(self) -> tuple[NDArray[np.float64], ...]:

@@ -139,9 +139,10 @@ def keeps_heading_level(dh: DHChain, axis: str) -> bool:
 def heading_shortened(dh: DHChain, task: Task) -> float:
     """By how much the squared length of a heading falls short of 1, at most, where that is so little that
     its direction alone counts; 0 for other tasks."""
-    if task.orientation != "yaw" or not keeps_heading_level(dh, task.axis):
+    if task.orientation != "yaw":
         return 0.0
-    return min(LEVEL, 2.0 * float(_shortened(dh, task.axis).max()))
+    short = float(_shortened(dh, task.axis).max())
+    return 2.0 * short if short < _LEVEL else 0.0
 
 
 def _shortened(dh: DHChain, axis: str) -> Array:

@@ -13,13 +13,13 @@ from ikgen.runtime.python.arrays.array_types import Array, Flags, Index
 from ikgen.runtime.python.newton.arm_newton import linearized, moved_rows
 from ikgen.runtime.python.rows.solution_rows import places
 from ikgen.runtime.python.singular.curve_parts import Parts, between
+from ikgen.runtime.python.singular.curve_samples import aside
 from ikgen.runtime.python.singular.fold_pair import Reduced, flow_and_others, keeps_sense, unit
 
 __all__ = ["Crossings", "crossings_of"]
 
 _CROSSINGS = 4  # crossings of a curve
 _HALVES = 4  # by which they are found
-_ASIDE = 0.4  # rad or m: so far from a crossing curves are apart
 
 
 class Crossings(NamedTuple):
@@ -61,9 +61,8 @@ def crossings_of(arm: Arm, parts: Parts, T: Array) -> Crossings:
     at = some_of(ends, 0)
     along, _ = unit((parts.b.q - parts.a.q)[:, list(arm.moving)])  # the still direction turns there
     other = np.linalg.svd(_others(arm, at._replace(still=along), aim))[2][:, -2]
-    step = _ASIDE / np.abs(other).max(axis=1)[:, None] * other
     part = np.stack([parts.a.q, parts.b.q], axis=1)
-    return Crossings(parts.owner, ends.q.swapaxes(0, 1), part, moved_rows(arm, at.q, step))
+    return Crossings(parts.owner, ends.q.swapaxes(0, 1), part, moved_rows(arm, at.q, aside(other)))
 
 
 def _keeps(arm: Arm, at: Reduced, T: Array) -> Flags:

@@ -10,7 +10,7 @@ from ikgen.runtime.python.arrays.array_types import Array, Flags
 from ikgen.runtime.python.newton.arm_newton import linearized, moved_rows
 from ikgen.runtime.python.singular.fold_pair import Reduced, correct, generic, still_directions
 
-__all__ = ["SOLVED", "sampled", "samples_beside"]
+__all__ = ["SOLVED", "aside", "sampled", "samples_beside"]
 
 SOLVED = 4e-15
 """What is left (rad, or m over the arm's size) at a solution, at most, by round-off."""
@@ -22,6 +22,11 @@ _ALMOST = 1e-3  # rad or m off the curve at which corrections may end if they ch
 _SAME = 4e-15  # rad or m: corrections that change what is left by less change nothing of it
 _ASIDE = 0.4  # rad or m: so far from where they cross curves are apart
 _STRAY = 1.0  # rad or m: larger corrections show that no curve is near
+
+
+def aside(direction: Array) -> Array:
+    """Ways (k, n) from where curves cross to where they are apart, along directions (k, n)."""
+    return np.asarray(_ASIDE / np.abs(direction).max(axis=1)[:, None] * direction)
 
 
 def samples_beside(arm: Arm, q: Array, T: Array) -> Reduced:
@@ -39,10 +44,10 @@ def samples_beside(arm: Arm, q: Array, T: Array) -> Reduced:
 def _take_aside(arm: Arm, at: Reduced, first: Reduced, T: Array) -> None:
     """Takes samples from beside where they first were, along the still direction, if corrections from there
     led astray: another curve nearly crosses."""
-    step = _ASIDE / np.abs(first.still).max(axis=1)[:, None] * first.still
-    for aside in (step, -step):
+    step = aside(first.still)
+    for way in (step, -step):
         astray = np.flatnonzero(~(np.abs(at.left) < arm.policy.fold_reach))
-        some = some_of(first._replace(q=moved_rows(arm, first.q, aside)), astray)
+        some = some_of(first._replace(q=moved_rows(arm, first.q, way)), astray)
         for whole, part in zip(at, sampled(arm, some, T[astray])[0]):
             whole[astray] = part
 
